@@ -82,19 +82,24 @@ class Engine {
    * @param {number[]} numbers
    */
   call(name, input, ...numbers) {
-    this.#put(input);
-    return JSON.parse(this.#text(this.#guarded(() => this.#exports[name](...numbers))));
+    return JSON.parse(new TextDecoder().decode(this.callForBytes(name, input, ...numbers)));
   }
 
   /**
    * Calls an export, and returns its answer, an ArrayBuffer.
    * @param {string} name
-   * @param {Uint8Array | null} input
+   * @param {Uint8Array | null} [input]
    * @param {number[]} numbers
    */
   callForBytes(name, input, ...numbers) {
     this.#put(input);
-    return this.#output(this.#guarded(() => this.#exports[name](...numbers)));
+    let code;
+    try {
+      code = this.#exports[name](...numbers);
+    } catch (trap) {
+      throw this.#failure(trap);
+    }
+    return this.#output(code);
   }
 
   /**
@@ -113,16 +118,7 @@ class Engine {
     } catch (trap) {
       throw this.#failure(trap);
     }
-    return JSON.parse(this.#text(code));
-  }
-
-  /** @param {() => number} act */
-  #guarded(act) {
-    try {
-      return act();
-    } catch (trap) {
-      throw this.#failure(trap);
-    }
+    return JSON.parse(new TextDecoder().decode(this.#output(code)));
   }
 
   /**
@@ -144,11 +140,6 @@ class Engine {
     const bytes = input ?? new Uint8Array();
     const address = this.#exports.input(bytes.length);
     this.bytes.set(bytes, address);
-  }
-
-  /** @param {number} code */
-  #text(code) {
-    return new TextDecoder().decode(this.#output(code));
   }
 
   /**

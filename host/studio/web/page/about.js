@@ -1,6 +1,7 @@
 // What the page is, what it simulates and what not, and whose work it carries.
 // @ts-check
 
+import { fillDialog } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 
 const IS = `frixel studio runs the firmware of a frixel board in the browser, 40,000 ticks a second, and a simulated
@@ -20,9 +21,10 @@ export function makeAbout() {
     const { version, commit, isChanged } = JSON.parse(await studio.text("about.json"));
     const made = commit ? `commit ${commit}${isChanged ? ", with changes" : ""}` : "not made from a checkout";
     const licences = element("details", {}, element("summary", {}, "Licences of all that this file carries"));
-    const close = element("button", { onclick: () => dialog.close() }, "Close");
-    dialog.replaceChildren(
-      element("div", { className: "head" }, element("h2", {}, "About"), close),
+    fillDialog(
+      dialog,
+      "About",
+      [],
       element("p", {}, IS),
       element("ul", { className: "plain" }, ...SIMULATED.map((words) => element("li", {}, words))),
       element("p", {}, DOCS),

@@ -2,6 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
+import { fillDialog } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 
@@ -118,7 +119,6 @@ export class Board {
   }
 
   #open() {
-    const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
     const serial = async () => {
       const port = await chosenPort();
       if (port) await this.#engine.connectSerial(port);
@@ -130,8 +130,10 @@ export class Board {
       this.#choice("Simulator", () => this.#engine.simulate(), "the same firmware, in this page"),
       this.#choice("Board on a USB port…", hasSerial && serial, whySerial),
     ];
-    this.#dialog.replaceChildren(
-      element("div", { className: "head" }, element("h2", {}, "Board"), close),
+    fillDialog(
+      this.#dialog,
+      "Board",
+      [],
       element(
         "p",
         {},

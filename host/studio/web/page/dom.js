@@ -41,6 +41,15 @@ export function element(tag, properties = {}, ...children) {
 }
 
 /**
+ * Gives an element its place in its parent, CSS pixels.
+ * @param {HTMLElement} placed
+ * @param {{ left: number, top: number, width: number, height: number }} area
+ */
+export function lay(placed, area) {
+  for (const [side, px] of Object.entries(area)) placed.style.setProperty(side, `${px}px`);
+}
+
+/**
  * Adds a style sheet where `within` stands. Unlike an element, it needs no leave of a content security policy.
  * @param {Element} within
  * @param {string} text
@@ -132,6 +141,25 @@ export function contextOf(canvas) {
   const context = canvas.getContext("2d");
   if (!context) throw new Error("this browser draws on no canvas");
   return context;
+}
+
+/**
+ * Draws a circle.
+ * @param {CanvasRenderingContext2D} context
+ * @param {[x: number, y: number, radius: number]} circle
+ * @param {{ fill?: string, stroke?: string, width?: number }} inks `width` is that of the line.
+ */
+export function drawCircle(context, [x, y, radius], { fill, stroke, width = 1 }) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  if (fill) {
+    context.fillStyle = fill;
+    context.fill();
+  }
+  if (!stroke) return;
+  context.strokeStyle = stroke;
+  context.lineWidth = width;
+  context.stroke();
 }
 
 /** The theme has changed: colours are resolved anew. */

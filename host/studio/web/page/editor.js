@@ -96,12 +96,18 @@ export class Editor {
   /** Replaces the scene's text; undo brings the old one back. */
   set text(text) {
     this.show();
-    const { length } = this.#view.state.doc;
-    this.#view.dispatch({
-      changes: { from: 0, to: length, insert: text },
-      selection: { anchor: 0 },
-      scrollIntoView: true,
-    });
+    this.#replace(0, this.#view.state.doc.length, text, 0);
+  }
+
+  /**
+   * Replaces a part of the shown text, and moves the cursor, which is seen then.
+   * @param {number} from
+   * @param {number} to
+   * @param {string} insert
+   * @param {number} anchor
+   */
+  #replace(from, to, insert, anchor = from + insert.length) {
+    this.#view.dispatch({ changes: { from, to, insert }, selection: { anchor }, scrollIntoView: true });
   }
 
   /**
@@ -172,12 +178,7 @@ export class Editor {
     this.show(file);
     const { doc } = this.#view.state;
     const at = number === 0 ? 0 : doc.line(Math.min(number, doc.lines)).to;
-    const insert = number === 0 ? `${text}\n` : `\n${text}`;
-    this.#view.dispatch({
-      changes: { from: at, insert },
-      selection: { anchor: at + insert.length },
-      scrollIntoView: true,
-    });
+    this.#replace(at, at, number === 0 ? `${text}\n` : `\n${text}`);
   }
 
   /**
@@ -186,8 +187,8 @@ export class Editor {
    * @param {[number, number]} lines
    */
   isTable(file, [first]) {
-    const state = file === this.#shown ? this.#view.state : this.#hidden.get(file);
-    return state !== undefined && first <= state.doc.lines && /^\s*\[\[/.test(state.doc.line(first).text);
+    const doc = this.versionOf(file);
+    return doc !== undefined && first <= doc.lines && /^\s*\[\[/.test(doc.line(first).text);
   }
 
   /**
@@ -221,12 +222,7 @@ export class Editor {
     this.show();
     const { doc } = this.#view.state;
     const gap = doc.toString().endsWith("\n") || doc.length === 0 ? "\n" : "\n\n";
-    const insert = `${gap}${text.trim()}\n`;
-    this.#view.dispatch({
-      changes: { from: doc.length, insert },
-      selection: { anchor: doc.length + insert.length },
-      scrollIntoView: true,
-    });
+    this.#replace(doc.length, doc.length, `${gap}${text.trim()}\n`);
   }
 
   /**
@@ -290,11 +286,7 @@ export class Editor {
       const end = endLine === undefined ? doc.lineAt(from).to : at(endLine, endColumn);
       return [{ from, to: Math.max(from, end), severity, message }];
     });
-    this.#view.dispatch(
-      setDiagnostics(
-        this.#view.state,
-        diagnostics.sort((a, b) => a.from - b.from),
-      ),
-    );
+    const inOrder = diagnostics.sort((a, b) => a.from - b.from);
+    this.#view.dispatch(setDiagnostics(this.#view.state, inOrder));
   }
 }

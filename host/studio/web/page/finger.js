@@ -3,7 +3,7 @@
 
 import { clock } from "../clock.js";
 import { ARROWS } from "./arrows.js";
-import { colour, contextOf } from "./dom.js";
+import { colour, contextOf, drawCircle, lay } from "./dom.js";
 import { Trail } from "./trail.js";
 
 /** @import { Engine } from "../engine/engine.js" */
@@ -88,12 +88,7 @@ export class Finger {
       width: Math.round(width * devicePixelRatio),
       height: Math.round(height * devicePixelRatio),
     });
-    Object.assign(this.#canvas.style, {
-      left: `${left}px`,
-      top: `${top}px`,
-      width: `${width}px`,
-      height: `${height}px`,
-    });
+    lay(this.#canvas, { left, top, width, height });
   }
 
   /** Ends the drawing. */
@@ -260,17 +255,10 @@ export class Finger {
     const { scale } = this.#map;
     const [x, y] = [finger.xMm * scale, finger.yMm * scale];
     const isDown = this.#isDown || this.#replayed !== undefined;
-    context.beginPath();
-    context.arc(x, y, Math.max(9, 4 * scale), 0, 2 * Math.PI);
-    context.fillStyle = isDown ? "#ffffff59" : "#ffffff1f";
-    context.fill();
-    context.lineWidth = isDown && !this.#isBlind ? 2 + 5 * this.#trail.friction : 2;
-    context.strokeStyle = isDown ? colour("felt", this.#map.box) : "#fff";
-    context.stroke();
-    context.lineWidth = 1;
-    context.strokeStyle = "#000b";
-    context.beginPath();
-    context.arc(x, y, Math.max(9, 4 * scale) + 4, 0, 2 * Math.PI);
-    context.stroke();
+    const radius = Math.max(9, 4 * scale);
+    const width = isDown && !this.#isBlind ? 2 + 5 * this.#trail.friction : 2;
+    const stroke = isDown ? colour("felt", this.#map.box) : "#fff";
+    drawCircle(context, [x, y, radius], { fill: isDown ? "#ffffff59" : "#ffffff1f", stroke, width });
+    drawCircle(context, [x, y, radius + 4], { stroke: "#000b" });
   }
 }

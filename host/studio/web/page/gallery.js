@@ -2,6 +2,7 @@
 // @ts-check
 
 import { sceneNames, sceneText } from "./bundled.js";
+import { choiceButton, fillDialog } from "./dialogs.js";
 import { byId, element, shortName } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
@@ -36,22 +37,10 @@ export class Gallery {
     this.#dialog.showModal();
     if (this.#isFilled) return;
     this.#isFilled = true;
-    const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
-    const scenes = element("div", { className: "scenes" });
-    this.#dialog.append(
-      element("div", { className: "head" }, element("h2", {}, "Gallery"), close),
-      element(
-        "p",
-        { className: "soft" },
-        "Open a scene, or take single layers over into yours.",
-      ),
-      scenes,
-    );
-    const cards = sceneNames().map((name) => ({
-      name,
-      ...emptyCard(name),
-    }));
-    scenes.append(...cards.map(({ card }) => card));
+    const cards = sceneNames().map((name) => ({ name, ...emptyCard(name) }));
+    const scenes = element("div", { className: "scenes" }, ...cards.map(({ card }) => card));
+    const words = element("p", { className: "soft" }, "Open a scene, or take single layers over into yours.");
+    fillDialog(this.#dialog, "Gallery", [], words, scenes);
     for (const { name, card, canvas } of cards) await this.#fill(card, canvas, name);
   }
 
@@ -63,18 +52,10 @@ export class Gallery {
   async #fill(card, canvas, name) {
     const text = await sceneText(name);
     const found = await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
-    const open = element("button", { className: "primary" }, `Open ${name}`);
-    open.onclick = () => {
-      this.#dialog.close();
-      attempt(() => this.onScene(name, text));
-    };
+    const open = choiceButton(this.#dialog, `Open ${name}`, () => this.onScene(name, text));
     canvas.onclick = () => open.click();
-    const layers = element(
-      "details",
-      {},
-      element("summary", {}, "Layers"),
-      element("ul", {}, ...this.#layers(text, found)),
-    );
+    const list = element("ul", {}, ...this.#layers(text, found));
+    const layers = element("details", {}, element("summary", {}, "Layers"), list);
     const words = element("p", { className: "fine" }, introduction(text));
     card.append(words, open, layers);
   }

@@ -41,13 +41,10 @@ const SLIDES = "A ghost finger is sliding: press to take over.";
 const RESTS = "Press and slide to feel it.";
 
 export class Ghost {
-  #engine;
-  #map;
-  #finger;
+  #parts;
   #note = byId("first-words");
   #isEnded = false;
   #isDismissed = false;
-  #sound;
   #isDown = false;
   #isStarted = false;
   /** Whether each picture of the screen moves it. */
@@ -62,11 +59,9 @@ export class Ghost {
   #felt;
 
   /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, sound: Sound }} parts */
-  constructor({ engine, map, finger, sound }) {
-    this.#engine = engine;
-    this.#map = map;
-    this.#finger = finger;
-    this.#sound = sound;
+  constructor(parts) {
+    const { map, finger } = parts;
+    this.#parts = parts;
     finger.overlays.push(this);
     this.#offerSound();
     byId("first-dismiss").onclick = () => this.dismiss();
@@ -77,9 +72,9 @@ export class Ghost {
 
   /** Whether it may slide now: never with a board, unseen, in a blind comparison, or while layers are edited. */
   get #maySlide() {
-    const { link, state } = this.#engine.state;
-    const isMapTaken = document.body.classList.contains("blind") || this.#map.box.classList.contains("editing");
-    const isThere = state === "active" && this.#map.frictionN.length > 0;
+    const { link, state } = this.#parts.engine.state;
+    const isMapTaken = document.body.classList.contains("blind") || this.#parts.map.box.classList.contains("editing");
+    const isThere = state === "active" && this.#parts.map.frictionN.length > 0;
     return link === "simulator" && isThere && !isMapTaken && document.visibilityState === "visible";
   }
 
@@ -94,7 +89,7 @@ export class Ghost {
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.end();
     if (this.#isEnded) return;
     this.#isStarted = true;
-    this.#finger.isGuided = true;
+    this.#parts.finger.isGuided = true;
     this.#say(SLIDES);
     this.wake();
   }
@@ -111,8 +106,8 @@ export class Ghost {
     this.#lift();
     this.#isEnded = true;
     this.#isMoving = false;
-    this.#finger.isGuided = false;
-    this.#finger.redraw();
+    this.#parts.finger.isGuided = false;
+    this.#parts.finger.redraw();
     this.#say(RESTS);
   }
 
@@ -131,13 +126,13 @@ export class Ghost {
 
   /** Sound that is on can be turned off, whatever was dismissed. */
   #show() {
-    this.#note.hidden = this.#isDismissed && !this.#sound.isOn;
+    this.#note.hidden = this.#isDismissed && !this.#parts.sound.isOn;
     if (this.#isDismissed) this.#note.classList.add("taken");
   }
 
   /** The board plays, or another one: what the words say is of the simulator. */
   showBoard() {
-    if (this.#engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
+    if (this.#parts.engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
     this.wake();
   }
 
@@ -147,7 +142,7 @@ export class Ghost {
   }
 
   #offerSound() {
-    const sound = this.#sound;
+    const { sound } = this.#parts;
     const hear = byId("hear");
     hear.onclick = () => attempt(() => (sound.isOn ? sound.stop() : sound.start()));
     sound.onChange = () => {
@@ -177,7 +172,7 @@ export class Ghost {
     if (!this.#maySlide) {
       this.#isMoving = false;
       this.#lift();
-      this.#finger.redraw();
+      this.#parts.finger.redraw();
       return;
     }
     this.#slide(ms);
@@ -197,12 +192,12 @@ export class Ghost {
       return;
     }
     this.#isDown = true;
-    this.#engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#map.screen), down: true });
+    this.#parts.engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#parts.map.screen), down: true });
   }
 
   /** At once: whoever takes over comes to a screen without a finger. */
   #lift() {
-    if (this.#isDown) this.#engine.lift();
+    if (this.#isDown) this.#parts.engine.lift();
     this.#isDown = false;
   }
 
@@ -218,7 +213,7 @@ export class Ghost {
    */
   draw(context) {
     if (this.#isEnded || !this.#felt) return;
-    const { scale } = this.#map;
+    const { scale } = this.#parts.map;
     const radius = Math.max(RADIUS_MIN_PX, RADIUS_MM * scale);
     context.save();
     context.translate(this.#felt.xMm * scale, this.#felt.yMm * scale);

@@ -1,7 +1,7 @@
 // What the mode Edit shows: a box over the map for each layer, and the panel of the layer that is selected.
 // @ts-check
 
-import { byId, element } from "./dom.js";
+import { byId, element, lay } from "./dom.js";
 import { LayerBoxes } from "./layer_boxes.js";
 import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
@@ -40,13 +40,8 @@ export class HandsView {
    * Covers the map.
    * @param {Area} area
    */
-  cover({ left, top, width, height }) {
-    Object.assign(this.surface.style, {
-      left: `${left}px`,
-      top: `${top}px`,
-      width: `${width}px`,
-      height: `${height}px`,
-    });
+  cover(area) {
+    lay(this.surface, area);
   }
 
   /**

@@ -24,15 +24,11 @@ const LONG_MIN_PX = 3;
 const BANDS = { predicted: { ink: "#7dffb0", side: -1 }, reported: { ink: "#ff7a1a", side: 1 } };
 
 export class Lag {
-  #engine;
-  #map;
-  #finger;
+  #parts;
   /** @type {Borders | undefined} */
   #borders;
   #isStroke = false;
   #isOpen = false;
-  #project;
-  #player;
   /**
    * The scene, as `Project.opened` counts, that another setting is on its way for: once it plays, the last stroke is
    * slid again.
@@ -47,12 +43,9 @@ export class Lag {
   isActive = false;
 
   /** @param {{ engine: Engine, map: FrictionMap, finger: Finger, project: Project, player: Player }} parts */
-  constructor({ engine, map, finger, project, player }) {
-    this.#engine = engine;
-    this.#project = project;
-    this.#player = player;
-    this.#map = map;
-    this.#finger = finger;
+  constructor(parts) {
+    const { finger, project } = parts;
+    this.#parts = parts;
     finger.overlays.push(this);
     byId("open-lag").onclick = () => this.#open(!this.isOpen);
     byId("touch").addEventListener("change", () => (this.#changing = project.opened));
@@ -79,29 +72,29 @@ export class Lag {
     if (isOpen || byId("prediction").checked) return;
     // Nothing else says that friction comes late.
     this.#predict(true);
-    if (this.#engine.state.link === "simulator") this.onChange();
+    if (this.#parts.engine.state.link === "simulator") this.onChange();
   }
 
   /** @param {boolean} isOn */
   #predict(isOn) {
     byId("prediction").checked = isOn;
-    this.#player.withoutPrediction = !isOn;
+    this.#parts.player.withoutPrediction = !isOn;
     this.#say();
   }
 
   #forget() {
     this.#borders = undefined;
     this.#isStroke = false;
-    this.#finger.redraw();
+    this.#parts.finger.redraw();
   }
 
   /** The scene plays, maybe in another way: the last stroke again shows what that changes. */
   played() {
     this.#forget();
-    const isChanging = this.#changing === this.#project.opened;
+    const isChanging = this.#changing === this.#parts.project.opened;
     this.#changing = undefined;
-    if (!isChanging || !this.isOpen || !this.hasStroke || this.#engine.state.link !== "simulator") return;
-    attempt(() => this.#engine.replay({ slowness: 1 }));
+    if (!isChanging || !this.isOpen || !this.hasStroke || this.#parts.engine.state.link !== "simulator") return;
+    attempt(() => this.#parts.engine.replay({ slowness: 1 }));
   }
 
   /** The scene does not play: a later one plays by itself, and no stroke with it. */
@@ -117,7 +110,7 @@ export class Lag {
 
   /** A board plays as its scene says: it has no switch. */
   showBoard() {
-    byId("open-lag").disabled = this.#engine.state.link !== "simulator";
+    byId("open-lag").disabled = this.#parts.engine.state.link !== "simulator";
     if (byId("open-lag").disabled) this.#open(false);
   }
 
@@ -127,7 +120,7 @@ export class Lag {
     const wasStroke = this.#isStroke;
     for (let at = 0; at < frame.xMm.length; at += 1) this.#add(frame, at);
     if (wasStroke || this.#isStroke) {
-      this.#finger.redraw();
+      this.#parts.finger.redraw();
       this.#say();
     }
   }
@@ -139,7 +132,7 @@ export class Lag {
   #add({ xMm, yMm, predictedXMm, predictedYMm, reportedXMm, reportedYMm, firstTick, ticksPerSample }, at) {
     const isDown = Number.isFinite(xMm[at]);
     if (isDown && !this.#isStroke) {
-      this.#borders = new Borders((x, y) => this.#map.frictionAt(x, y), this.#map.frictionN);
+      this.#borders = new Borders((x, y) => this.#parts.map.frictionAt(x, y), this.#parts.map.frictionN);
     }
     if (this.#isStroke && !isDown) this.#borders?.end();
     this.#isStroke = isDown;
@@ -170,7 +163,7 @@ export class Lag {
   /** @param {CanvasRenderingContext2D} context */
   draw(context) {
     if (!this.isOpen || !this.#borders) return;
-    const { scale } = this.#map;
+    const { scale } = this.#parts.map;
     // Both sides of a line are borders: the band stands where friction rises.
     for (const border of this.#borders.found.filter(({ isUp }) => isUp)) {
       context.save();

@@ -1,7 +1,7 @@
 // The outlines of the layers on the map, and the handles of the one that is selected.
 // @ts-check
 
-import { element } from "./dom.js";
+import { element, lay } from "./dom.js";
 import { clamp } from "./place.js";
 import { numberText } from "./toml_text.js";
 
@@ -77,18 +77,18 @@ export class LayerBoxes {
       // The layers follow each other as in the text. A button that stays where it is keeps the focus.
       if (this.#parent.children[at] !== button) this.#parent.insertBefore(button, this.#parent.children[at]);
       const each = layers[at];
-      const { key, place } = each;
+      const { key, place: { box, copies: offsets } } = each;
       const isSelected = key === selected;
       // The layers are one stop of Tab, so that the panel of each comes next.
       button.tabIndex = isSelected || (selected === undefined && at === 0) ? 0 : -1;
       button.classList.toggle("is-selected", isSelected);
       button.setAttribute("aria-current", String(isSelected));
       button.setAttribute("aria-label", labelOf(each));
-      lay(button, place.box, scale);
-      for (const [dx, dy] of place.copies) {
+      place(button, box, scale);
+      for (const [dx, dy] of offsets) {
         if (dx === 0 && dy === 0) continue;
         const copy = element("div", { className: isSelected ? "layer-copy is-selected" : "layer-copy" });
-        lay(copy, { ...place.box, x: place.box.x + dx, y: place.box.y + dy }, scale);
+        place(copy, { ...box, x: box.x + dx, y: box.y + dy }, scale);
         copies.push(copy);
       }
     }
@@ -138,13 +138,8 @@ export class LayerBoxes {
  * @param {Box} box
  * @param {number} scale
  */
-function lay(made, { x, y, width, height }, scale) {
-  Object.assign(made.style, {
-    left: `${x * scale}px`,
-    top: `${y * scale}px`,
-    width: `${width * scale}px`,
-    height: `${height * scale}px`,
-  });
+function place(made, { x, y, width, height }, scale) {
+  lay(made, { left: x * scale, top: y * scale, width: width * scale, height: height * scale });
 }
 
 /** @param {EditedLayer} edited */

@@ -1,7 +1,7 @@
 // The lens at the finger while a stroke is replayed slowly: contact, reports, predicted place, voltage and force.
 // @ts-check
 
-import { byId, colour } from "./dom.js";
+import { byId, colour, drawCircle } from "./dom.js";
 
 /** @import { Frame, Reach } from "../engine/types" */
 /** @import { Finger } from "./finger.js" */
@@ -125,12 +125,9 @@ export class Lens {
     const centre = [inside(at.xMm * scale, width), inside(at.yMm * scale, most)];
     context.save();
     context.translate(centre[0], centre[1]);
-    context.beginPath();
-    context.arc(0, 0, radius, 0, 2 * Math.PI);
     context.save();
+    drawCircle(context, [0, 0, radius], { fill: "#10141b" });
     context.clip();
-    context.fillStyle = "#10141b";
-    context.fillRect(-radius, -radius, 2 * radius, 2 * radius);
     context.scale(radius / RADIUS_MM, radius / RADIUS_MM);
     context.translate(-at.xMm, -at.yMm);
     this.#map.drawOn(context);
@@ -139,14 +136,8 @@ export class Lens {
     context.restore();
     this.#drawFinger(context, radius, colour("felt", box));
     this.#drawEnvelope(context, radius, colour("voltage", box));
-    context.beginPath();
-    context.arc(0, 0, radius, 0, 2 * Math.PI);
-    context.lineWidth = 5;
-    context.strokeStyle = "#000b";
-    context.stroke();
-    context.lineWidth = 2.5;
-    context.strokeStyle = "#fff";
-    context.stroke();
+    drawCircle(context, [0, 0, radius], { stroke: "#000b", width: 5 });
+    drawCircle(context, [0, 0, radius], { stroke: "#fff", width: 2.5 });
     context.restore();
   }
 
@@ -161,27 +152,14 @@ export class Lens {
     const { at, predicted, direction, radiusMm, feltN } = this.#now;
     const perMm = radius / RADIUS_MM;
     const local = (/** @type {Place} */ place) => [(place.xMm - at.xMm) * perMm, (place.yMm - at.yMm) * perMm];
-    if (Number.isFinite(radiusMm)) {
-      context.beginPath();
-      context.arc(0, 0, radiusMm * perMm, 0, 2 * Math.PI);
-      context.fillStyle = "#ffffff38";
-      context.fill();
-      context.lineWidth = 1.5;
-      context.strokeStyle = "#fff";
-      context.stroke();
-    }
+    const skin = { fill: "#ffffff38", stroke: "#fff", width: 1.5 };
+    if (Number.isFinite(radiusMm)) drawCircle(context, [0, 0, radiusMm * perMm], skin);
     drawArrow(context, [-direction.xMm, -direction.yMm], (0.85 * radius * feltN) / this.#highN, ink);
     for (const [index, report] of this.#reports.entries()) {
       const [x, y] = local(report);
       if (Math.hypot(x, y) > radius - 6) continue;
       context.globalAlpha = (index + 1) / this.#reports.length;
-      context.beginPath();
-      context.arc(x, y, 4.5, 0, 2 * Math.PI);
-      context.fillStyle = "#ffd23f";
-      context.fill();
-      context.lineWidth = 1.5;
-      context.strokeStyle = "#000";
-      context.stroke();
+      drawCircle(context, [x, y, 4.5], { fill: "#ffd23f", stroke: "#000", width: 1.5 });
     }
     context.globalAlpha = 1;
     if (predicted) drawCross(context, local(predicted));

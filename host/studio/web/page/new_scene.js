@@ -2,6 +2,7 @@
 // @ts-check
 
 import { BEGINNINGS, sceneWith } from "./beginnings.js";
+import { choiceButton, fillDialog } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
@@ -36,43 +37,20 @@ export class NewScene {
     this.#dialog.showModal();
     this.#dialog.scrollTop = 0;
     if (this.#dialog.childElementCount > 0) return;
-    const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
     const scenes = element("div", { className: "scenes" });
-    const empty = element("button", { onclick: () => this.#choose("untitled", EMPTY) }, "Empty scene");
-    this.#dialog.append(
-      element("div", { className: "head" }, element("h2", {}, "New scene"), empty, close),
-      element("p", { className: "soft" }, "Begin with one of these, and change it."),
-      scenes,
-    );
+    const empty = choiceButton(this.#dialog, "Empty scene", () => this.onScene("untitled", EMPTY), {});
+    const words = element("p", { className: "soft" }, "Begin with one of these, and change it.");
+    fillDialog(this.#dialog, "New scene", [empty], words, scenes);
     const cards = BEGINNINGS.map(({ name, words, layer }) => {
       const text = sceneWith(words, layer);
       const canvas = element("canvas", { "aria-hidden": "true" });
-      const begin = element("button", { className: "primary" }, `Begin with ${name}`);
-      begin.onclick = () => this.#choose(name, text);
+      const begin = choiceButton(this.#dialog, `Begin with ${name}`, () => this.onScene(name, text));
+      const own = choiceButton(this.#dialog, "Choose a picture…", () => this.onPicture(), {});
       const said = element("p", { className: "fine" }, words);
-      const actions = layer.kind === "bitmap" ? [this.#own(), begin] : [begin];
+      const actions = layer.kind === "bitmap" ? [own, begin] : [begin];
       scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), said, ...actions));
       return { canvas, text };
     });
     for (const { canvas, text } of cards) await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
-  }
-
-  /** The button that lets a person choose a picture. */
-  #own() {
-    const choose = element("button", {}, "Choose a picture…");
-    choose.onclick = () => {
-      this.#dialog.close();
-      this.onPicture();
-    };
-    return choose;
-  }
-
-  /**
-   * @param {string} name
-   * @param {string} text
-   */
-  #choose(name, text) {
-    this.#dialog.close();
-    attempt(() => this.onScene(name, text));
   }
 }

@@ -1,6 +1,7 @@
 // The dialog of Open: files, and the pieces of work that the browser keeps.
 // @ts-check
 
+import { choiceButton, fillDialog } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { fragmentIn } from "./share.js";
@@ -40,15 +41,11 @@ export class Open {
 
   /** @param {() => void} choose */
   async #open(choose) {
-    const files = element("button", { className: "primary" }, "Files…");
-    files.onclick = () => {
-      this.#dialog.close();
-      choose();
-    };
-    const close = element("button", { onclick: () => this.#dialog.close() }, "Close");
     const list = element("div", { className: "scenes" });
-    this.#dialog.replaceChildren(
-      element("div", { className: "head" }, element("h2", {}, "Open"), files, close),
+    fillDialog(
+      this.#dialog,
+      "Open",
+      [choiceButton(this.#dialog, "Files…", choose)],
       element("p", { className: "soft" }, "Files: a scene with its files, pictures, profiles, or a saved zip."),
       this.#link(),
       element("h3", {}, "Recent scenes"),
@@ -87,11 +84,7 @@ export class Open {
       this.#urls.push(url);
       card.append(element("img", { src: url, alt: "" }));
     }
-    const open = element("button", { className: "primary" }, `Open ${name}`);
-    open.onclick = () => {
-      this.#dialog.close();
-      attempt(() => this.onWork(id));
-    };
+    const open = choiceButton(this.#dialog, `Open ${name}`, () => this.onWork(id));
     const remove = element("button", {}, "Delete");
     remove.onclick = () => {
       remove.textContent = "Delete for good";

@@ -33,12 +33,7 @@ const BACK_MS = 30_000;
  */
 
 export class OpenScene {
-  #engine;
-  #project;
-  #player;
-  #editor;
-  #compare;
-  #profiles;
+  #parts;
   #autosave;
   /** Takes the offer away that leads back to the scene before. @type {() => void} */
   #forgetBack = () => {};
@@ -48,13 +43,9 @@ export class OpenScene {
   onAppend = () => {};
 
   /** @param {Parts} parts */
-  constructor({ engine, project, player, editor, compare, profiles, works }) {
-    this.#engine = engine;
-    this.#project = project;
-    this.#player = player;
-    this.#editor = editor;
-    this.#compare = compare;
-    this.#profiles = profiles;
+  constructor(parts) {
+    const { project, player, editor, compare, profiles, works } = parts;
+    this.#parts = parts;
     this.#autosave = new Autosave(works, () => this.saved);
     editor.onChange = (file, text) => {
       compare.cancel();
@@ -75,8 +66,8 @@ export class OpenScene {
    * @returns {SavedScene & { entry: string }}
    */
   get saved() {
-    const { name, entry, profiles, files } = this.#project;
-    return { name, entry, profiles: { ...profiles }, text: this.#editor.text, files: [...files] };
+    const { name, entry, profiles, files } = this.#parts.project;
+    return { name, entry, profiles: { ...profiles }, text: this.#parts.editor.text, files: [...files] };
   }
 
   /** What was open before a reload, if anything was. */
@@ -102,8 +93,8 @@ export class OpenScene {
 
   /** Plays the scene anew, as it is now. */
   replay() {
-    this.#compare.cancel();
-    this.#player.now(this.#editor.text);
+    this.#parts.compare.cancel();
+    this.#parts.player.now(this.#parts.editor.text);
   }
 
   /**
@@ -121,7 +112,7 @@ export class OpenScene {
   append(text) {
     return this.#bringIn(async () => {
       this.onAppend();
-      this.#editor.append(text);
+      this.#parts.editor.append(text);
     });
   }
 
@@ -142,8 +133,8 @@ export class OpenScene {
    */
   takePicture({ name, bytes }) {
     return this.#bringIn(async () => {
-      const free = this.#project.freeName(name, bytes);
-      this.#project.add(free, bytes);
+      const free = this.#parts.project.freeName(name, bytes);
+      this.#parts.project.add(free, bytes);
       this.#filesChanged();
       return free;
     });
@@ -155,14 +146,14 @@ export class OpenScene {
    */
   take({ scene, files, profiles }) {
     return this.#bringIn(async () => {
-      for (const [kind, profile] of profiles) this.#profiles.add(kind, profile);
+      for (const [kind, profile] of profiles) this.#parts.profiles.add(kind, profile);
       if (scene) await this.#replace(scene);
       else {
-        for (const [name, content] of files) this.#project.add(name, content);
+        for (const [name, content] of files) this.#parts.project.add(name, content);
         this.#filesChanged();
       }
       if (!files.some(([name]) => isPicture(name))) return;
-      this.#editor.onReveal();
+      this.#parts.editor.onReveal();
       byId("tab-pictures").click();
     });
   }
@@ -174,9 +165,9 @@ export class OpenScene {
    * @param {() => Promise<Value>} action
    */
   #bringIn(action) {
-    return this.#player.expect(async () => {
+    return this.#parts.player.expect(async () => {
       try {
-        await this.#engine.forget();
+        await this.#parts.engine.forget();
         return await action();
       } catch (error) {
         // The board gets the scene back that is still shown.
@@ -189,7 +180,7 @@ export class OpenScene {
   /** @param {SceneToOpen} scene */
   async #replace({ name, text, files = [], profiles, ...work }) {
     assertTextsFit({ name, text, files });
-    const [autosave, project] = [this.#autosave, this.#project];
+    const [autosave, project] = [this.#autosave, this.#parts.project];
     const before = { ...this.saved, ...autosave.state };
     this.#forgetBack();
     forgetNotice();
@@ -198,8 +189,8 @@ export class OpenScene {
     await project.replaceFiles(files);
     project.name = name;
     this.#showName();
-    if (profiles) this.#profiles.choose(profiles);
-    this.#editor.open(text);
+    if (profiles) this.#parts.profiles.choose(profiles);
+    this.#parts.editor.open(text);
     this.#isWorkedOn = true;
     this.#showFiles();
     await autosave.opened(work);
@@ -213,7 +204,7 @@ export class OpenScene {
    */
   #offerBack(before, isKept) {
     this.#forgetBack = notify(
-      isKept ? `${before.name} is kept in Open.` : `${this.#project.name} is open.`,
+      isKept ? `${before.name} is kept in Open.` : `${this.#parts.project.name} is open.`,
       { words: `Back to ${before.name}`, action: () => this.open(before) },
       { isGood: true, isLasting: true, beside: byId("scene-name") },
     );
@@ -229,14 +220,14 @@ export class OpenScene {
   }
 
   #showName() {
-    const { name } = this.#project;
+    const { name } = this.#parts.project;
     Object.assign(byId("scene-name"), { value: name, size: Math.max(4, Math.min(name.length, 24)) });
     document.title = `${name} · frixel studio`;
   }
 
   /** @param {string} name */
   #rename(name) {
-    const project = this.#project;
+    const project = this.#parts.project;
     const before = project.name;
     project.name = name.trim();
     if (project.files.has(project.entry)) {
@@ -255,16 +246,16 @@ export class OpenScene {
   }
 
   #showFiles() {
-    const { files } = this.#project;
+    const { files } = this.#parts.project;
     const remove = (/** @type {string} */ name) => {
       files.delete(name);
       this.#filesChanged();
     };
     const add = (/** @type {string} */ layer) => attempt(() => this.append(layer));
-    showPictures(this.#project, add, remove);
+    showPictures(this.#parts.project, add, remove);
     /** @type {[string, string][]} */
     const texts = [];
     for (const [name, content] of files) if (isToml(name) && typeof content === "string") texts.push([name, content]);
-    this.#editor.setFiles(texts);
+    this.#parts.editor.setFiles(texts);
   }
 }

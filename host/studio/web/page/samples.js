@@ -8,25 +8,24 @@ const CAPACITY = 40_000;
 const IDLE_S = 1;
 
 /**
- * The columns of a frame that are kept.
- * @type {Column[]}
+ * What is kept of a sample: its time and the columns of a frame, with the names that files give them.
+ * @type {Record<"timeS" | Column, string>}
  */
-const COLUMNS = [
-  "xMm",
-  "yMm",
-  "speedMmPerS",
-  "referenceN",
-  "feltN",
-  "voltageV",
-  "predictedXMm",
-  "predictedYMm",
-  "reportedXMm",
-  "reportedYMm",
-  "contactRadiusMm",
-];
-const CSV_HEAD =
-  "time_s,x_mm,y_mm,speed_mm_per_s,reference_n,felt_n,voltage_v_rms," +
-  "predicted_x_mm,predicted_y_mm,reported_x_mm,reported_y_mm,contact_radius_mm";
+const NAMES = {
+  timeS: "time_s",
+  xMm: "x_mm",
+  yMm: "y_mm",
+  speedMmPerS: "speed_mm_per_s",
+  referenceN: "reference_n",
+  feltN: "felt_n",
+  voltageV: "voltage_v_rms",
+  predictedXMm: "predicted_x_mm",
+  predictedYMm: "predicted_y_mm",
+  reportedXMm: "reported_x_mm",
+  reportedYMm: "reported_y_mm",
+  contactRadiusMm: "contact_radius_mm",
+};
+const [, ...COLUMNS] = /** @type {["timeS", ...Column[]]} */ (Object.keys(NAMES));
 
 /**
  * Something for the time of samples and for each column of frames.
@@ -102,7 +101,7 @@ export class Samples {
    */
   csv(fromS, toS) {
     const columns = this.since(fromS);
-    const rows = [CSV_HEAD];
+    const rows = [Object.values(NAMES).join(",")];
     for (let at = 0; at < columns.timeS.length && columns.timeS[at] <= toS; at += 1) {
       const row = Object.values(columns).map((values) => values[at]);
       rows.push(row.map((value) => (Number.isFinite(value) ? Number(value.toFixed(6)) : "")).join(","));
