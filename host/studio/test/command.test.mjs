@@ -1,42 +1,28 @@
-// The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams, and the sentences of
-// `frixel check`. Only these tests are told where the command is.
+// The page beside the command: `frixel sim` behind a `navigator.serial` made of byte streams. Only these tests are told
+// where the command is.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
-import { after, afterEach, test } from "node:test";
-import {
-  addSerialPort, cleanUp, endLeftovers, openOnlyEngine, required, rowsOf, startVirtualBoard, WAIT_MAX_MS,
-} from "./harness.mjs";
-import { openStudio } from "./page.mjs";
+import { test } from "node:test";
+import { addSerialPort, openOnlyEngine, rowsOf, startVirtualBoard, WAIT_MAX_MS } from "./harness.mjs";
 
 /** The longest host timeout: a machine that is held up for less does not disarm the board. */
 const HOST_TIMEOUT_MS = 1000;
 
-afterEach(endLeftovers);
-after(cleanUp);
-
 async function playOnVirtualBoard(scene) {
   const board = await startVirtualBoard();
-  const opened = await openOnlyEngine();
-  await addSerialPort(opened.page, board.terminal);
-  await opened.page.evaluate(() => tested.connectSerial(serialPort));
-  await play(opened.page, scene);
-  return { ...opened, board };
-}
-
-/** Plays a bundled scene with the longest host timeout. */
-function play(page, scene) {
-  return page.evaluate(
+  const page = await openOnlyEngine();
+  await addSerialPort(page, board.terminal);
+  await page.evaluate(
     async ([name, hostTimeoutMs]) => {
+      await tested.connectSerial(serialPort);
       const files = await sceneFiles(name);
       files[name] += `\n[drive]\nhost_timeout_ms = ${hostTimeoutMs}\n`;
       await tested.play(files, name, {});
     },
     [scene, HOST_TIMEOUT_MS],
   );
+  return { page, board };
 }
 
 /** What happened on the board, without the time that a busy machine makes it drop. */
@@ -56,7 +42,7 @@ async function silenceAfter(board, silence) {
 }
 
 test("a scene is played, changed and stopped on a board at a serial port", async () => {
-  const { page, board, errors, close } = await playOnVirtualBoard("keyboard.toml");
+  const { page, board } = await playOnVirtualBoard("keyboard.toml");
   await page.waitForFunction(() => felt.filter((frame) => !frame.simulated).length > 30);
   await page.waitForFunction(() => states.at(-1).state === "active");
   // The simulated finger reaches a key.
@@ -77,16 +63,14 @@ test("a scene is played, changed and stopped on a board at a serial port", async
   await page.waitForFunction((frames) => felt.length > frames + 10 && felt.at(-1).state === "active", frames);
   await page.evaluate(() => tested.simulate());
   await board.stop();
-  assert.deepEqual(errors, []);
   const events = eventsOf(board).map((row) => row.event);
   assert.deepEqual(events, ["armed", "active", "armed", "disarmed"], "leaving stops and disarms");
   const rows = rowsOf(path.join(board.out, "felt.csv"));
   assert.ok(rows.some((row) => Number(row.voltage_v_rms) > 1));
-  await close();
 });
 
 test("a killed worker: the board is at zero within its host timeout", async () => {
-  const { page, board, close } = await playOnVirtualBoard("constant.toml");
+  const { page, board } = await playOnVirtualBoard("constant.toml");
   await page.waitForFunction(() => felt.some((frame) => frame.voltageV.some((voltage) => voltage > 1)));
   const kill = () => {
     for (const worker of workersOfPage.host) worker.terminate();
@@ -99,39 +83,4 @@ test("a killed worker: the board is at zero within its host timeout", async () =
   const driven = rowsOf(path.join(board.out, "felt.csv")).filter((row) => Math.abs(Number(row.voltage_v_rms)) > 1);
   const last = Number(driven.at(-1).t_s);
   assert.ok(last <= Number(silent.t_s) + 1e-3, `driven at ${last} s, silent at ${silent.t_s} s`);
-  await close();
-});
-
-test("a typed mistake shows the sentence of `frixel check`, and the mended scene plays on", async () => {
-  const { page, errors, close } = await openStudio();
-  const good = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
-  await page.evaluate((text) => played(text), good);
-  const line = good.split("\n").findIndex((each) => each.startsWith("kind =")) + 1;
-  await page.evaluate((line) => studioPage.editor.goTo(undefined, line), line);
-  await page.keyboard.press("End");
-  await page.keyboard.press("ArrowLeft");
-  await page.keyboard.type("x");
-  const shown = page.locator("#problems li.error");
-  await shown.waitFor();
-  const bad = await page.evaluate(() => studioPage.editor.text);
-  const file = path.join(fs.mkdtempSync(path.join(os.tmpdir(), "frixel-page-")), "scene.toml");
-  fs.writeFileSync(file, bad);
-  let said = "";
-  try {
-    execFileSync(required("FRIXEL"), ["check", file], { encoding: "utf8", stdio: "pipe" });
-  } catch ({ stdout, stderr }) {
-    said = stdout + stderr;
-  }
-  const [, sentence] = /scene\.toml:\d+:\d+: (.+)/.exec(said);
-  assert.equal(await shown.evaluate((item) => item.lastChild.textContent), sentence);
-  assert.ok(sentence.includes("gratingx"), sentence);
-  await page.locator(".cm-lintRange-error").waitFor();
-  const state = await page.evaluate(() => document.documentElement.dataset.state);
-  assert.equal(state, "active", "the scene before plays on");
-  await page.keyboard.press("Backspace");
-  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
-  assert.equal(await shown.count(), 0);
-  assert.equal(await page.evaluate(() => studioPage.editor.text), good);
-  assert.deepEqual(errors, []);
-  await close();
 });

@@ -2,14 +2,10 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import { after, afterEach, test } from "node:test";
-import { PLATES, drag, dragHandle, onPage, openEditing, plays, press, selected, textOf } from "./editing.mjs";
-import { cleanUp, endLeftovers } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio } from "./page.mjs";
+import { test } from "node:test";
+import { PLATES, drag, dragHandle, hold, onPage, openEditing, press, selected, textOf } from "./editing.mjs";
+import { WHOLE_SCREEN_GRATING, assertSays, give, openStudio, plays, writeScene } from "./page.mjs";
 import { pageModule } from "./page_module.mjs";
-
-afterEach(endLeftovers);
-after(cleanUp);
 
 const EMPTY = "version = 1\n";
 const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url).pathname;
@@ -22,7 +18,7 @@ const overlap = (one, other) =>
   one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
 
 test("Add puts a layer of each kind where there is room, selected, in one step of undo, and each is felt", async () => {
-  const { page, errors } = await openEditing(EMPTY);
+  const page = await openEditing(EMPTY);
   assert.match(await panel(page).textContent(), /^This scene has no layer yet: add one\./);
   const texts = [EMPTY];
   for (const [name, kind] of [["stripes", "grating"], ["button", "button"], ["noise", "noise"]]) {
@@ -41,7 +37,6 @@ test("Add puts a layer of each kind where there is room, selected, in one step o
     await press(page, "Control+z");
     assert.equal(await textOf(page), text);
   }
-  assert.deepEqual(errors, []);
 });
 
 test("layers that are added fit screens of any size, and their lengths the layers", async () => {
@@ -61,7 +56,7 @@ test("layers that are added fit screens of any size, and their lengths the layer
 });
 
 test("Duplicate puts a copy beside its layer, also of one in an array, and one undo takes it back", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Control+d");
   const copy = `[[layer]]
@@ -78,18 +73,17 @@ friction_fraction = 0.5`;
   assert.equal(await textOf(page), PLATES);
   const region = "{ x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 }";
   const one = `{ kind = "constant", friction_fraction = 0.5, region = ${region} }`;
-  await page.evaluate((text) => played(text), `version = 1\nlayer = [${one}]\n`);
+  await writeScene(page, `version = 1\nlayer = [${one}]\n`);
   await page.mouse.click(...(await onPage(page, 100, 60)));
   await page.getByRole("button", { name: "Duplicate" }).click();
   const moved = one.replace("x_mm = 80, y_mm = 40", "x_mm = 75, y_mm = 35");
   assert.equal(await textOf(page), `version = 1\nlayer = [${one}, ${moved}]\n`);
   await plays(page);
   assert.equal(await page.locator(".layer-box").count(), 2);
-  assert.deepEqual(errors, []);
 });
 
 test("a layer that is taken from the gallery while layers are edited is selected", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.click("#open-gallery");
   const card = page.locator("#gallery article", { has: page.locator('h3:text-is("constant")') });
   await card.locator("summary").click();
@@ -100,17 +94,24 @@ test("a layer that is taken from the gallery while layers are edited is selected
   await page.waitForFunction(() => document.querySelectorAll(".layer-box").length === 3);
   await plays(page);
   assert.ok((await selected(page)).startsWith(name), await selected(page));
-  assert.deepEqual(errors, []);
 });
 
-test("a picture of one's own begins a scene and is added to one, by its aspect, in a frame that fits", async () => {
-  const { page, errors } = await openStudio();
-  const choose = async (action) => {
+test("a picture of one's own begins a scene and is added to one, by its aspect, in a frame that fits the screen", async () => {
+  const page = await openStudio();
+  const choose = async (action, name, buffer) => {
     const [chooser] = await Promise.all([page.waitForEvent("filechooser"), action()]);
-    await chooser.setFiles([{ name: "my wood.jpg", mimeType: "image/jpeg", buffer: fs.readFileSync(JPEG) }]);
+    await chooser.setFiles([{ name, mimeType: "image/jpeg", buffer }]);
   };
-  await page.click("#new");
-  await choose(() => page.click("text=Choose a picture…"));
+  const begin = async (name, buffer) => {
+    await page.click("#new");
+    await choose(() => page.click("text=Choose a picture…"), name, buffer);
+  };
+  const wood = fs.readFileSync(JPEG);
+  await begin("notes.txt", Buffer.from("x"));
+  await assertSays(page, /^notes\.txt: expected /);
+  await begin("bad.jpg", Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 1, 2, 3]));
+  await assertSays(page, /^bad\.jpg: this picture cannot be read$/);
+  await begin("my wood.jpg", wood);
   await page.waitForFunction(() => studioPage.editor.text.includes('picture = "my wood.jpg"'));
   await plays(page);
   assert.equal(await page.inputValue("#scene-name"), "my wood");
@@ -121,7 +122,7 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
     return image.width / image.height;
   });
   assert.ok(Math.abs(width / height / aspect - 1) < 0.01, `${width} by ${height}, ${aspect}`);
-  await choose(() => page.click("[aria-label='Add picture']"));
+  await choose(() => page.click("[aria-label='Add picture']"), "my wood.jpg", wood);
   await page.locator(".layer-box").nth(1).waitFor();
   await plays(page);
   assert.match(await selected(page), /^my wood 2, bitmap/);
@@ -130,24 +131,30 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
   await press(page, "Control+z");
   await plays(page);
   assert.equal(await page.locator(".layer-box").count(), 1);
-  assert.deepEqual(errors, []);
+  await give(page, ["wide.toml", "width_mm = 300.0\nheight_mm = 60.0\n"]);
+  await page.waitForFunction(() => studioPage.map.screen.widthMm === 300);
+  await begin("wood.jpg", wood);
+  await page.waitForFunction(() => studioPage.editor.text.includes('picture = "wood.jpg"'));
+  const [, x, y, long] = /x_mm = ([\d.]+)\ny_mm = ([\d.]+)\nwidth_mm = ([\d.]+)/.exec(await textOf(page)).map(Number);
+  assert.ok(Math.abs(x + long / 2 - 150) <= 0.5 && y >= 0 && y < 15, `${x}, ${y}, ${long}`);
+  await plays(page);
+  await page.locator(".layer-box[aria-current=true]").waitFor();
 });
 
 test("the frame of a picture without a region is where the picture is", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   const layer = 'kind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
   const text = `version = 1\n[[layer]]\n${layer}`;
-  await page.evaluate((text) => played(text), text);
+  await writeScene(page, text);
   await page.mouse.click(...(await onPage(page, 60, 40)));
   assert.match(await selected(page), /^bitmap, 90 by [\d.]+ mm at 15, 10$/);
   await drag(page, [60, 40], [50, 35]);
   assert.equal(await textOf(page), text.replace("x_mm = 15\ny_mm = 10", "x_mm = 5\ny_mm = 5"));
   await plays(page);
-  assert.deepEqual(errors, []);
 });
 
 test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await drag(page, [20, 30], [25, 30]);
   const moved = await textOf(page);
   await page.evaluate(() => document.activeElement.blur());
@@ -163,17 +170,16 @@ test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async (
   await page.locator("#about").waitFor();
   await press(page, "Control+z");
   assert.equal(await textOf(page), moved);
-  assert.deepEqual(errors, []);
 });
 
 test("Enter goes to the numbers and Escape back to the layer; an arrow says why a layer does not move", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Enter");
   assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "left of left, mm");
   await press(page, "Escape", "ArrowRight");
   assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 11.0"));
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   await page.mouse.click(...(await onPage(page, 60, 40)));
   await press(page, "ArrowRight");
   assert.match(await note(page), /covers the whole screen: drag a corner/);
@@ -182,11 +188,10 @@ test("Enter goes to the numbers and Escape back to the layer; an arrow says why 
   await press(page, "Enter");
   assert.equal(await note(page), "");
   await plays(page);
-  assert.deepEqual(errors, []);
 });
 
 test("with Shift a layer moves along one axis, and a corner keeps the ratio; with Alt it rests anywhere", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.keyboard.down("Shift");
   await drag(page, [20, 30], [32, 33]);
   await page.keyboard.up("Shift");
@@ -200,51 +205,30 @@ test("with Shift a layer moves along one axis, and a corner keeps the ratio; wit
   await page.keyboard.up("Shift");
   const [, width, height] = /30 by 30|([\d.]+) by ([\d.]+) mm/.exec(await selected(page));
   assert.ok(width === height && width < 21, `${width} by ${height}`);
-  assert.deepEqual(errors, []);
 });
 
 test("a drag that Escape takes back, or that ends where it began, is no step of undo", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   const isUndone = () => page.isEnabled("#undo");
   await drag(page, [20, 30], [25, 30]);
   await press(page, "Control+z");
   const [text, redo] = [await textOf(page), await page.isEnabled("#redo")];
   assert.ok(redo);
   const before = await isUndone();
-  await page.mouse.move(...(await onPage(page, 20, 30)));
-  await page.mouse.down();
-  await page.mouse.move(...(await onPage(page, 40, 30)));
+  await hold(page, [20, 30], [40, 30]);
   await press(page, "Escape");
   await page.mouse.up();
   assert.deepEqual([await textOf(page), await isUndone(), await page.isEnabled("#redo")], [text, before, true]);
-  await page.mouse.move(...(await onPage(page, 20, 30)));
-  await page.mouse.down();
-  for (const x of [40, 20]) await page.mouse.move(...(await onPage(page, x, 30)));
+  await hold(page, [20, 30], [40, 30], [20, 30]);
   await page.mouse.up();
   assert.deepEqual([await textOf(page), await isUndone(), await page.isEnabled("#redo")], [text, before, true]);
   await plays(page);
   await press(page, "Control+y");
   assert.match(await textOf(page), /x_mm = 15\.0/);
-  assert.deepEqual(errors, []);
-});
-
-test("a text that is too large for the studio is not taken into the editor, and the page says so", async () => {
-  const { page, errors } = await openStudio();
-  const before = await textOf(page);
-  await page.locator(".cm-content").focus();
-  await page.evaluate(() => {
-    const data = new DataTransfer();
-    data.setData("text/plain", "# a line of a comment\n".repeat(100_000));
-    const paste = new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true });
-    document.querySelector(".cm-content").dispatchEvent(paste);
-  });
-  assert.match(await page.locator("#notice span").textContent(), /^the text has 2\.3 MB, more than the 0\.5 MB/);
-  assert.equal(await textOf(page), before);
-  assert.deepEqual(errors, []);
 });
 
 test("layers are taken out one after the other, faster than any check", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 20, 30)));
   await press(page, "Delete");
   await page.mouse.click(...(await onPage(page, 100, 50)));
@@ -254,11 +238,10 @@ test("layers are taken out one after the other, faster than any check", async ()
   await press(page, "Control+z", "Control+z");
   assert.equal(await textOf(page), PLATES);
   await plays(page);
-  assert.deepEqual(errors, []);
 });
 
 test("Delete says which layer it takes out and offers the way back, on which the layer is selected again", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 100, 50)));
   await press(page, "Delete");
   const notice = page.locator("#notice");
@@ -282,11 +265,10 @@ test("Delete says which layer it takes out and offers the way back, on which the
   await press(page, "Control+z");
   await page.waitForFunction(() => document.getElementById("notice").hidden);
   assert.equal(await textOf(page), PLATES);
-  assert.deepEqual(errors, []);
 });
 
 test("the offer of Delete undoes nothing else, also where the text is the same again", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 100, 50)));
   await press(page, "Delete");
   await page.locator("#notice").getByRole("button", { name: "Undo", exact: true }).waitFor();
@@ -301,11 +283,10 @@ test("the offer of Delete undoes nothing else, also where the text is the same a
   });
   assert.equal(now, without);
   assert.match(await page.locator("#notice span").textContent(), /has changed since/);
-  assert.deepEqual(errors, []);
 });
 
 test("what an undo brings back is selected in the mode Edit alone", async () => {
-  const { page, errors } = await openEditing();
+  const page = await openEditing();
   await page.mouse.click(...(await onPage(page, 100, 50)));
   await press(page, "Delete");
   await plays(page);
@@ -315,5 +296,4 @@ test("what an undo brings back is selected in the mode Edit alone", async () => 
   assert.equal(await textOf(page), PLATES);
   await press(page, "Control+d");
   assert.equal(await textOf(page), PLATES, "nothing is selected that could be doubled");
-  assert.deepEqual(errors, []);
 });

@@ -1,7 +1,7 @@
 // What the tests of the mode Edit share: a scene that is edited, and drags on its map.
 
 import assert from "node:assert/strict";
-import { openStudio } from "./page.mjs";
+import { openScene, settled } from "./page.mjs";
 
 export const PLATES = `# Two plates.
 version = 1
@@ -28,30 +28,12 @@ low_fraction = 0
 high_fraction = 0.9
 `;
 
-/** Opens the page with a scene, in the mode Edit. */
+/** Opens the scene in the page of all tests, in the mode Edit. */
 export async function openEditing(text = PLATES) {
-  const opened = await openStudio();
-  await opened.page.evaluate((text) => played(text), text);
-  await opened.page.getByRole("button", { name: "Edit", exact: true }).click();
-  // The screen has another size than that of the first scene.
-  await opened.page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
-  await settled(opened.page);
-  return opened;
-}
-
-/** Waits until the map has found its place: the browser's frames and those of the page's clock go on meanwhile. */
-export function settled(page) {
-  return page.evaluate(async () => {
-    const parts = ["#map-finger", ".hands"].map((part) => document.querySelector(part));
-    const place = () => JSON.stringify(parts.map((part) => part.getBoundingClientRect()));
-    for (let before = ""; before !== place(); ) {
-      before = place();
-      for (let frames = 0; frames < 4; frames += 1) {
-        await new Promise(requestAnimationFrame);
-        await new Promise(studioClock.nextFrame);
-      }
-    }
-  });
+  const page = await openScene(text);
+  await page.getByRole("button", { name: "Edit", exact: true }).click();
+  await settled(page);
+  return page;
 }
 
 /** Where a place of the screen is in the window, CSS pixels. */
@@ -66,12 +48,27 @@ export function onPage(page, xMm, yMm) {
   );
 }
 
-/** Drags with the mouse from one place to another, mm, and lifts. */
-export async function drag(page, from, to) {
+/** Presses the mouse at a place of the screen, mm, and drags to others. */
+export async function hold(page, from, ...places) {
   await page.mouse.move(...(await onPage(page, ...from)));
   await page.mouse.down();
-  await page.mouse.move(...(await onPage(page, ...to)), { steps: 6 });
+  for (const place of places) await page.mouse.move(...(await onPage(page, ...place)), { steps: 6 });
+}
+
+/** Drags with the mouse from one place to another, mm, and lifts. */
+export async function drag(page, from, to) {
+  await hold(page, from, to);
   await page.mouse.up();
+}
+
+/** Presses a slider at a part of its width, and drags to others. Returns what drags on. */
+export async function holdSlider(page, slider, from, ...parts) {
+  const { x, y, width, height } = await slider.boundingBox();
+  const dragTo = (part) => page.mouse.move(x + width * part, y + height / 2, { steps: 3 });
+  await dragTo(from);
+  await page.mouse.down();
+  for (const part of parts) await dragTo(part);
+  return dragTo;
 }
 
 /** Drags a handle of the layer that is selected by so many mm. */
@@ -87,8 +84,6 @@ export async function dragHandle(page, side, dx, dy) {
 }
 
 export const textOf = (page) => page.evaluate(() => studioPage.editor.text);
-export const plays = (page) =>
-  page.waitForFunction(() => !studioPage.player.isHeld && document.getElementById("check").textContent === "plays");
 export const selected = (page) => page.locator(".layer-box[aria-current=true]").getAttribute("aria-label");
 export const press = async (page, ...keys) => {
   for (const key of keys) await page.keyboard.press(key);

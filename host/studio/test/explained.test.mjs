@@ -1,12 +1,8 @@
 // The page in a browser: each number says what it is, to a press and to keys, and nothing is said of another scene.
 
 import assert from "node:assert/strict";
-import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
-import { KEYS, WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
-
-afterEach(endLeftovers);
-after(cleanUp);
+import { test } from "node:test";
+import { KEYS, WHOLE_SCREEN_GRATING, openScene, openStudio, plays, resize, wholeStroke, writeScene } from "./page.mjs";
 
 /** Stripes on the right half; bare glass on the left. */
 const RIGHT_HALF = `${WHOLE_SCREEN_GRATING}region = { x_mm = 60, y_mm = 0, width_mm = 60, height_mm = 80 }\n`;
@@ -20,7 +16,7 @@ region = { x_mm = 60, y_mm = 20, width_mm = 40, height_mm = 40 }
 `;
 
 test("a press on a number, and a key, say what it is", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   const notice = page.locator("#notice");
   const meanings = {
     "Felt friction": /simulated finger feels/,
@@ -29,7 +25,7 @@ test("a press on a number, and a key, say what it is", async () => {
     Speed: /Speed of the simulated finger/,
   };
   for (const [width, height] of [[1366, 657], [390, 844]]) {
-    await page.setViewportSize({ width, height });
+    await resize(page, [width, height]);
     for (const [at, [title, meaning]] of Object.entries(meanings).entries()) {
       const { x, y, width: wide } = await page.locator("#numbers div").nth(at).boundingBox();
       await page.mouse.click(x + wide - 8, y + 30);
@@ -49,13 +45,10 @@ test("a press on a number, and a key, say what it is", async () => {
   const lag = await page.innerText("#lag");
   assert.match(lag, /How far past a line the finger is when its friction comes/);
   assert.match(lag, /– with prediction\s+– without/, "both in one unit and one word");
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("steps above bare glass and the largest step of a layer have names of their own, each explained in a line", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  const page = await openScene(WHOLE_SCREEN_GRATING);
   for (const panel of ["layers", "report"]) {
     await page.click(`#tab-${panel}`);
     const words = await page.innerText(`#panel-${panel}`);
@@ -70,26 +63,16 @@ test("steps above bare glass and the largest step of a layer have names of their
   const needs = await page.innerText("#felt");
   assert.match(needs, /targets.*the least and the most that the scene asks for anywhere/);
   assert.match(needs, /reachable.*the map's colours end there/);
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING.replace("= 2\nlow", "= 3\nlow"));
+  await writeScene(page, WHOLE_SCREEN_GRATING.replace("= 2\nlow", "= 3\nlow"));
   assert.ok(await page.locator("#felt details").first().evaluate(({ open }) => open), "what was unfolded stays so");
-  assert.deepEqual(errors, []);
-  await close();
-});
-
-test("a layer of one friction has the step at its border", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.evaluate((text) => played(text), PLATE);
-  await page.click("#tab-report");
+  await writeScene(page, PLATE);
   const cells = await page.locator("#felt tbody tr").first().locator("td").allInnerTexts();
   assert.equal(cells.length, 4, cells.join(" | "));
-  assert.ok(Number(cells[2]) > 1, `${cells[2]} steps`);
-  assert.deepEqual(errors, []);
-  await close();
+  assert.ok(Number(cells[2]) > 1, `${cells[2]} steps at the border of a layer of one friction`);
 });
 
 test("where nothing is driven nothing is above bare glass, and half a volt is neither none nor one", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.evaluate((text) => played(text), RIGHT_HALF);
+  const page = await openScene(RIGHT_HALF);
   const said = await page.evaluate(async () => {
     const found = new Set();
     const stop = eachFrame(() => {
@@ -119,26 +102,22 @@ test("where nothing is driven nothing is above bare glass, and half a volt is ne
     return { volts: [0, 0.5, 9.96, 150.4].map(volts) };
   });
   assert.deepEqual(volts, ["0.0", "0.5", "10", "150"]);
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("what is said of layers is marked while the text has mistakes", async () => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   const marks = () =>
     page.evaluate(() => ["felt", "panel-layers"].map((id) => getComputedStyle(document.getElementById(id), "::before").content));
   assert.deepEqual(await marks(), ["none", "none"]);
   await page.evaluate((text) => (studioPage.editor.text = text), WHOLE_SCREEN_GRATING.replace("grating", "gratin"));
   await page.locator("#problems li.error").waitFor();
   for (const mark of await marks()) assert.match(mark, /the version before/);
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   assert.deepEqual(await marks(), ["none", "none"]);
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("the button of the sound says what it does, and stays as long as there is sound", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   const hear = page.locator("#hear");
   await hear.click();
   await hear.locator("text=Turn sound off").waitFor();
@@ -147,19 +126,17 @@ test("the button of the sound says what it does, and stays as long as there is s
   assert.ok(await hear.isVisible(), "after Edit");
   await hear.click();
   await hear.locator("text=Hear it").waitFor();
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("a scene that opens has none of the curves of the one before, and friction no numbers below zero", async () => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   await wholeStroke(page, 40);
   assert.ok(await page.evaluate(() => studioPage.samples.count > 0));
   await page.evaluate(() => wait(1500));
   await page.click("#open-gallery");
   await page.click('text="Open grating"');
   await page.waitForFunction(() => document.getElementById("scene-name").value === "grating");
-  await page.waitForFunction(() => document.getElementById("check").textContent === "plays");
+  await plays(page);
   const kept = await page.evaluate(() => studioPage.samples.since(0).xMm.filter(Number.isFinite).length);
   assert.equal(kept, 0);
   const axis = await page.evaluate(async () => {
@@ -167,12 +144,10 @@ test("a scene that opens has none of the curves of the one before, and friction 
     return [-10, 0, 20].map(notBelowZero);
   });
   assert.deepEqual(axis, ["", "0", "20"]);
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("a slide that leaves the map selects no text, and a selection is read in light and dark", async () => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   const from = await page.locator("#map-picture").boundingBox();
   const to = await page.locator("#editor").boundingBox();
   await page.mouse.move(from.x + 4, from.y + 4);
@@ -199,14 +174,17 @@ test("a slide that leaves the map selects no text, and a selection is read in li
     });
     assert.ok(part >= 4.5, `${colorScheme}: ${part}`);
   }
-  assert.deepEqual(errors, []);
-  await close();
 });
 
-test("in the gallery the picture opens its scene, names read as words, and Close stays in sight", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.setViewportSize({ width: 390, height: 844 });
-  await page.click("#open-gallery");
+test("in the gallery pictures have their places at once and open their scenes, names read as words, and Close stays in sight", async () => {
+  const page = await openStudio();
+  await resize(page, [390, 844]);
+  // Nothing is drawn yet.
+  const shapes = await page.evaluate(() => {
+    document.getElementById("open-gallery").click();
+    return [...document.querySelectorAll("#gallery canvas")].map((each) => each.clientWidth / each.clientHeight);
+  });
+  assert.ok(shapes.length > 5 && shapes.every((ratio) => Math.abs(ratio - 1.5) < 0.02), `${shapes}`);
   await page.locator("#gallery button", { hasText: "Open velvet" }).waitFor();
   assert.deepEqual((await page.locator("#gallery h3").allTextContents()).filter((name) => name.includes("_")), []);
   await page.evaluate(() => document.getElementById("gallery").scrollTo(0, 10_000));
@@ -214,14 +192,12 @@ test("in the gallery the picture opens its scene, names read as words, and Close
   assert.ok(box.y >= 0 && box.y + box.height <= 844, JSON.stringify(box));
   await page.locator("#gallery article", { hasText: "Open velvet" }).locator("canvas").click();
   await page.waitForFunction(() => document.getElementById("scene-name").value === "velvet");
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("names of layers are whole in the table, and the state beside a name, with the text open", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.setViewportSize({ width: 1366, height: 657 });
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "stripes"\nkind = "grating"'));
+  const page = await openStudio();
+  await resize(page, [1366, 657]);
+  await writeScene(page, WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "stripes"\nkind = "grating"'));
   await page.click("#tab-report");
   const lines = await page.evaluate(() =>
     [...document.querySelectorAll("#felt tbody th, #felt .verdict, #felt .number")]
@@ -240,14 +216,11 @@ test("names of layers are whole in the table, and the state beside a name, with 
     return [found.scrollHeight <= found.clientHeight + 1, found.scrollWidth <= found.clientWidth + 1, found.textContent];
   });
   assert.deepEqual(check.slice(0, 2), [true, true], check[2]);
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("a voltage that the board does not let through is a warning at its line, counted while the text is closed", async () => {
-  const { page, errors, close } = await openStudio();
   const text = WHOLE_SCREEN_GRATING.replace("version = 1\n", "version = 1\n[drive]\nvoltage_max_v_rms = 1000\n");
-  await page.evaluate((text) => played(text), text);
+  const page = await openScene(text);
   const warning = page.locator("#problems li.warning");
   await warning.waitFor();
   assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` is more than the board lets through/);
@@ -255,8 +228,6 @@ test("a voltage that the board does not let through is a warning at its line, co
   await page.click("#toggle-drawer");
   const count = page.locator("#mistakes");
   assert.deepEqual([await count.innerText(), await count.getAttribute("aria-label")], ["1", "1 warning"]);
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   assert.ok(await count.isHidden());
-  assert.deepEqual(errors, []);
-  await close();
 });

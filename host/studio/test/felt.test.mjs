@@ -1,9 +1,8 @@
 // The page in a browser: what is felt along a slide, and its sound.
 
 import assert from "node:assert/strict";
-import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke } from "./page.mjs";
+import { test } from "node:test";
+import { WHOLE_SCREEN_GRATING, openStudio, wholeStroke, writeScene } from "./page.mjs";
 
 /**
  * The goal of DESIGN 8: error of the felt friction below 40 Hz over the reference's own AC rms, and correlation. The
@@ -28,9 +27,6 @@ const STILL_ZERO_MS = 500;
 const STILL_DRIVEN_MAX = 0.4;
 /** Rms voltage that counts as none: what the carrier's last half period leaves of a mean, V. */
 const ZERO_V = 2;
-
-afterEach(endLeftovers);
-after(cleanUp);
 
 /** A first-order low-pass forwards and backwards, so that it delays nothing; samples are 1 ms apart. */
 function lowPass(values) {
@@ -91,21 +87,28 @@ function assertFelt({ error, correlation, swing }, most, context, what) {
 }
 
 test("a slide is felt as the scene has it", async (context) => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   assertFelt(await feltAlong(page, [30, 60, 90]), BRICK, context, "brick");
-  await page.evaluate((text) => played(text), FEATURES_OF_10_MM);
+  await writeScene(page, FEATURES_OF_10_MM);
   assertFelt(await feltAlong(page, [20, 40, 60]), GOAL, context, "features of 10 mm");
   await stopOutput(page);
   const silent = await feltAlong(page, [40]);
   assert.throws(() => assertFelt(silent, GOAL, context, "with the output at zero"));
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("a lifted finger gets nothing, and a still one is driven less than while it moves", async (context) => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   // On the rough half, where there is a drive at each place.
   await page.evaluate(async () => played(await studio.text("scenes/constant.toml")));
+  const { given, kept } = await page.evaluate(async () => {
+    const { engine, samples } = studioPage;
+    const take = engine.onFrames;
+    const frame = await new Promise((resolve) => (engine.onFrames = resolve));
+    engine.onFrames = take;
+    const given = Object.keys(frame).filter((name) => frame[name] instanceof Float32Array);
+    return { given, kept: Object.keys(samples.since(samples.nowS)).filter((name) => name !== "timeS") };
+  });
+  assert.deepEqual(kept, given, "the page keeps each column that the module gives to a frame");
   const slideAndRest = async (speedMmPerS) => {
     const { samples } = studioPage;
     const beginS = samples.nowS;
@@ -130,8 +133,6 @@ test("a lifted finger gets nothing, and a still one is driven less than while it
   const { voltageV: lifted, xMm } = found.lifted;
   assert.ok(xMm.every(Number.isNaN), "the finger is up");
   assert.ok(lifted.length > 20 && lifted.every((voltage) => voltage < ZERO_V), "zero without a finger");
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 /** Runs in the page: the sound of a slide, as the processor makes it of what the engine gives, and its spectrum. */
@@ -191,21 +192,19 @@ async function assertSoundPeakHz(page, speedMmPerS) {
 }
 
 test("the sound's peak is speed over wavelength; without output there is none", async (context) => {
-  const { page, errors, close } = await openStudio();
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  const page = await openStudio();
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   for (const speedMmPerS of [100, 150]) {
     const hz = await assertSoundPeakHz(page, speedMmPerS);
     context.diagnostic(`${speedMmPerS} mm/s over 2 mm: ${hz.toFixed(1)} Hz`);
   }
   await stopOutput(page);
   await assert.rejects(assertSoundPeakHz(page, 100), /no sound| Hz at/, "with the output at zero");
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("a slide is heard where sound is on", async () => {
-  const { page, errors, close } = await openStudio();
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  const page = await openStudio();
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   await page.click("#tab-sound");
   await page.click("text=Sound on");
   await page.locator("#panel-sound >> text=Sound off").waitFor();
@@ -221,20 +220,4 @@ test("a slide is heard where sound is on", async () => {
     slideOn();
   });
   await page.waitForFunction(isHeard);
-  assert.deepEqual(errors, []);
-  await close();
-});
-
-test("the page keeps each column that the module gives to a frame", async () => {
-  const { page, close } = await openStudio();
-  const { given, kept } = await page.evaluate(async () => {
-    const { engine, samples } = studioPage;
-    const take = engine.onFrames;
-    const frame = await new Promise((resolve) => (engine.onFrames = resolve));
-    engine.onFrames = take;
-    const given = Object.keys(frame).filter((name) => frame[name] instanceof Float32Array);
-    return { given, kept: Object.keys(samples.since(samples.nowS)).filter((name) => name !== "timeS") };
-  });
-  assert.deepEqual(kept, given);
-  await close();
 });

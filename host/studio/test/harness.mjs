@@ -10,6 +10,7 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import readline from "node:readline";
+import { after, afterEach } from "node:test";
 import tty from "node:tty";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -34,29 +35,52 @@ export function required(name) {
 }
 
 let browser;
-/** What the tests have started and not ended, in this order. */
-const leftovers = new Set();
+/** Errors that the pages of a test have reported. */
+const errors = [];
+/** What ends what a test has started, and what all tests of its file share, in this order. */
+const started = { byTest: new Set(), byFile: new Set() };
+let starter = "byTest";
 
 /** Ends something after the test, in whatever way the test ends. Returns a function that ends it before. */
 function endLater(end) {
+  const ends = started[starter];
   const endNow = () => {
-    leftovers.delete(endNow);
+    ends.delete(endNow);
     return end();
   };
-  leftovers.add(endNow);
+  ends.add(endNow);
   return endNow;
 }
 
-/** Ends the pages and programs of a test, the newest first: they would take the machine's time from the next test. */
-export async function endLeftovers() {
-  for (const end of [...leftovers].reverse()) await end();
+/** What `start` starts ends after the last test of the file, not after the first that uses it. */
+export async function forAllTests(start) {
+  starter = "byFile";
+  try {
+    return await start();
+  } finally {
+    starter = "byTest";
+  }
+}
+
+/** The newest ends first. */
+async function endAll(ends) {
+  for (const end of [...ends].reverse()) await end();
+}
+
+/** Ends the pages and programs of a test, which would take the machine's time from the next one. No page may fail. */
+export async function endTest() {
+  await endAll(started.byTest);
+  assert.deepEqual(errors.splice(0), [], "what pages report");
 }
 
 /** Ends everything that the tests of a file have started. */
-export async function cleanUp() {
-  await endLeftovers();
+export async function endFile() {
+  await endAll(started.byFile);
   await browser?.close();
 }
+
+afterEach(endTest);
+after(endFile);
 
 /** Makes a program end with `quit`, and waits until it has ended. */
 async function endProgram(program, quit) {
@@ -67,17 +91,18 @@ async function endProgram(program, quit) {
 }
 
 /**
- * Opens the page, and returns it with the list of errors that it reports. `init`, if given, runs in the page before its
+ * Opens the page, which must report no error unless it `mayFail`. `init`, if given, runs in the page before its
  * scripts. With `isSimulated`, its time is that of `simulated_clock.mjs`.
  */
-export async function openPage(url = pageUrl, { init, isSimulated = false } = {}) {
+export async function openPage(url = pageUrl, { init, isSimulated = false, mayFail = false } = {}) {
   browser ??= await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
   context.setDefaultTimeout(WAIT_MAX_MS);
   const page = await context.newPage();
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(error.message));
-  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  if (!mayFail) {
+    page.on("pageerror", (error) => errors.push(error.message));
+    page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  }
   if (isSimulated) await page.addInitScript(addSimulatedClock);
   await page.addInitScript(() => {
     // The tests end workers as a crash would.
@@ -96,16 +121,16 @@ export async function openPage(url = pageUrl, { init, isSimulated = false } = {}
     };
   });
   if (init) await page.addInitScript(init);
-  const close = endLater(() => context.close());
+  endLater(() => context.close());
   await page.goto(url);
-  return { page, errors, close };
+  return page;
 }
 
 /** Opens the page with an engine of the test's own: see `addOnlyEngine`. */
 export async function openOnlyEngine(url, options) {
-  const opened = await openPage(url, options);
-  await addOnlyEngine(opened.page);
-  return opened;
+  const page = await openPage(url, options);
+  await addOnlyEngine(page);
+  return page;
 }
 
 /**

@@ -40,12 +40,6 @@ export const overlap = (one, other) =>
   Math.min(one.right, other.right) - Math.max(one.left, other.left) > ROUNDING_PX &&
   Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > ROUNDING_PX;
 
-/** The page has taken this window. */
-export async function resize(page, [width, height]) {
-  await page.setViewportSize({ width, height });
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-}
-
 /** Scenes that the windows are looked at with, each in its colours. */
 export const SCHEMES = { brick: "light", velvet: "dark" };
 

@@ -1,22 +1,17 @@
 // The page in windows of eight sizes: what is felt is seen without scrolling, and the map has most of the room.
 
 import assert from "node:assert/strict";
-import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
+import { test } from "node:test";
 import {
-  AROUND_NARROW_PX, PART, PHONE_MAX_PX, PLOT_MIN_PX, SCHEMES, WINDOWS,
-  boxOf, boxes, cut, isWithin, openBundled, overlap, resize, scrolls,
+  AROUND_NARROW_PX, PART, PHONE_MAX_PX, PLOT_MIN_PX, SCHEMES, WINDOWS, boxOf, boxes, cut, isWithin, openBundled, overlap, scrolls,
 } from "./layout.mjs";
-import { openStudio } from "./page.mjs";
-
-afterEach(endLeftovers);
-after(cleanUp);
+import { openStudio, resize } from "./page.mjs";
 
 const SEEN = ["header", "#stop", "#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend"];
 
 for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
   test(`map, numbers, scope and legend are seen at eight sizes, ${scene}, ${colorScheme}`, async () => {
-    const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+    const page = await openStudio(undefined, { isFirstVisit: true });
     await page.emulateMedia({ colorScheme });
     if (scene !== "brick") await openBundled(page, scene);
     for (const [width, height] of WINDOWS) {
@@ -44,13 +39,11 @@ for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
       const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
       assert.ok(plot >= PLOT_MIN_PX, `${size}: the curves have ${plot} px`);
     }
-    assert.deepEqual(errors, []);
-    await close();
   });
 }
 
 test("text and tools are closed at the first visit, and later as they were left", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   const drawer = page.locator("#drawer");
   const toggle = page.locator("#toggle-drawer");
   assert.ok(await drawer.isHidden());
@@ -72,12 +65,10 @@ test("text and tools are closed at the first visit, and later as they were left"
   await page.reload();
   await page.waitForFunction(() => globalThis.studioPage);
   assert.ok(await drawer.isHidden(), "it stays closed");
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("values in the legend are whole, and neither they nor a tab change the size of anything", async () => {
-  const { page, errors, close } = await openStudio();
+  const page = await openStudio();
   const parts = ["#scope .u-wrap", "#scope .u-legend", "#numbers", "#map-finger", "#editor", ".side", "#drawer"];
   for (const size of WINDOWS.filter(([width]) => width > PHONE_MAX_PX)) {
     await resize(page, size);
@@ -104,12 +95,10 @@ test("values in the legend are whole, and neither they nor a tab change the size
       assert.deepEqual(await boxes(page, parts), before, `${size}: ${tab}`);
     }
   }
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 test("Arm has its place, and Stop is red and stays where it is", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   const parts = ["#stop", "#toggle-drawer", "#open-gallery", "#map-finger", "#numbers"];
   for (const size of WINDOWS) {
     await resize(page, size);
@@ -146,6 +135,4 @@ test("Arm has its place, and Stop is red and stays where it is", async () => {
       if (isShown) assert.ok(box[2] <= before["#stop"].left && box[0] >= 0, `${size}: ${state} ${box}`);
     }
   }
-  assert.deepEqual(errors, []);
-  await close();
 });

@@ -1,16 +1,11 @@
 // The page in a browser: in windows of all sizes, and whatever is open, nothing is cut and nothing lies over another.
 
 import assert from "node:assert/strict";
-import { after, afterEach, test } from "node:test";
-import { cleanUp, endLeftovers } from "./harness.mjs";
+import { test } from "node:test";
 import {
-  LOW_WINDOWS, PLOT_MIN_PX, ROUNDING_PX, SCHEMES, WINDOWS,
-  boxOf, boxes, cut, isWithin, openBundled, overlap, resize, scrolls,
+  LOW_WINDOWS, PLOT_MIN_PX, ROUNDING_PX, SCHEMES, WINDOWS, boxOf, boxes, cut, isWithin, openBundled, overlap, scrolls,
 } from "./layout.mjs";
-import { openStudio } from "./page.mjs";
-
-afterEach(endLeftovers);
-after(cleanUp);
+import { openStudio, resize } from "./page.mjs";
 
 /** The panel of Edit follows what is scrolled, lies beside the map, and is reached down to its last button. */
 async function assertPanelScrolls(page, where, [, height]) {
@@ -32,7 +27,7 @@ async function assertPanelScrolls(page, where, [, height]) {
 }
 
 test("in a low window the page scrolls below its header, and nothing lies over another", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   const parts = ["#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend", "#editor", ".side"];
   for (const scene of Object.keys(SCHEMES)) {
     if (scene !== "brick") await openBundled(page, scene);
@@ -66,8 +61,6 @@ test("in a low window the page scrolls below its header, and nothing lies over a
       }
     }
   }
-  assert.deepEqual(errors, []);
-  await close();
 });
 
 /** What can be opened: how, what has to be within the window then, and how it is closed. */
@@ -110,7 +103,7 @@ const OPENED = {
 };
 
 test("whatever is open, nothing is wider than the window", async () => {
-  const { page, errors, close } = await openStudio(undefined, { isFirstVisit: true });
+  const page = await openStudio(undefined, { isFirstVisit: true });
   for (const scene of Object.keys(SCHEMES)) {
     if (scene !== "brick") await openBundled(page, scene);
     for (const [width, height] of [...WINDOWS, ...LOW_WINDOWS]) {
@@ -134,6 +127,4 @@ test("whatever is open, nothing is wider than the window", async () => {
       }
     }
   }
-  assert.deepEqual(errors, []);
-  await close();
 });

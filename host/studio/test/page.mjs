@@ -4,7 +4,7 @@ import fs from "node:fs";
 import os from "node:os";
 import path from "node:path";
 import assert from "node:assert/strict";
-import { openPage, pageUrl } from "./harness.mjs";
+import { forAllTests, openPage, pageUrl } from "./harness.mjs";
 
 /**
  * Opens the page, as `openPage` does, and waits until its first scene plays. Its time is simulated, unless the options
@@ -12,14 +12,78 @@ import { openPage, pageUrl } from "./harness.mjs";
  * open, and the ghost finger is dismissed, as a person has left them, unless it is the first visit.
  */
 export async function openStudio(url = pageUrl, { isFirstVisit = false, ...options } = {}) {
-  const opened = await openPage(url, { isSimulated: true, ...options });
-  await opened.page.waitForFunction(() => globalThis.studioPage && document.documentElement.dataset.state === "active");
-  await opened.page.waitForFunction(() => document.getElementById("check").textContent === "plays");
-  await opened.page.evaluate(addHelpers);
-  if (isFirstVisit) return opened;
-  await opened.page.evaluate(() => document.getElementById("first-dismiss").click());
-  await showDrawer(opened.page);
-  return opened;
+  const page = await openPage(url, { isSimulated: true, ...options });
+  await plays(page);
+  await page.evaluate(addHelpers);
+  if (isFirstVisit) return page;
+  await page.evaluate(() => document.getElementById("first-dismiss").click());
+  await showDrawer(page);
+  return page;
+}
+
+/** The page of all tests of a file that begin with `openScene`. */
+let shared;
+
+/**
+ * A page with a scene that has just been opened and plays, of a screen of 120 by 80 mm. It is one for all tests of a
+ * file: opening a page takes the processor for seconds. What else a test changes in it, it has to change back.
+ */
+export async function openScene(text) {
+  shared ??= await forAllTests(openStudio);
+  const page = shared;
+  await resize(page, [1280, 800]);
+  await showDrawer(page);
+  await page.evaluate(openAnew, text);
+  await page.waitForFunction((text) => studioPage.editor.text === text, text);
+  await plays(page);
+  await page.waitForFunction(() => studioPage.map.screen.heightMm === 80);
+  await page.evaluate(() => document.querySelector("#notice [aria-label=Dismiss]").click());
+  return page;
+}
+
+/** Runs in the page: opens a scene by a link, with no history and nothing selected. */
+async function openAnew(text) {
+  for (const dialog of document.querySelectorAll("dialog[open]")) dialog.close();
+  document.activeElement.blur();
+  document.querySelector(".mode button").click();
+  document.getElementById("tab-layers").click();
+  document.querySelector("main").scrollTo(0, 0);
+  const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
+  history.replaceState(null, "", "#");
+  location.hash = new URL(linkOf("opened", text, [])).hash;
+}
+
+/** Writes this text in place of the scene's, and waits until it plays and its check is shown. */
+export function writeScene(page, text) {
+  return page.evaluate((text) => played(text), text);
+}
+
+/** Waits until the page has its scene played, and no hand changes that. */
+export const plays = (page) =>
+  page.waitForFunction(() => {
+    const isHeld = globalThis.studioPage?.player.isHeld ?? true;
+    return !isHeld && document.getElementById("check").textContent === "plays";
+  });
+
+/** Waits until the map has found its place: the browser's frames and those of the page's clock go on meanwhile. */
+export function settled(page) {
+  return page.evaluate(async () => {
+    const parts = ["#map-finger", ".hands"].map((part) => document.querySelector(part));
+    const place = () => JSON.stringify(parts.map((part) => part.getBoundingClientRect()));
+    for (let before = ""; before !== place(); ) {
+      before = place();
+      for (let frames = 0; frames < 4; frames += 1) {
+        await new Promise(requestAnimationFrame);
+        await new Promise(studioClock.nextFrame);
+      }
+    }
+  });
+}
+
+/** Gives the window another size, CSS pixels, and waits until the page has taken it. */
+export async function resize(page, [width, height]) {
+  await page.setViewportSize({ width, height });
+  await settled(page);
 }
 
 /** Opens the drawer with text and tools, unless it is open. */
@@ -156,16 +220,16 @@ const JPEG = fs.readFileSync(new URL("../../../scenes/textures/wood.jpg", import
 
 /** Opens a scene that includes another, which shows a JPEG picture. */
 export async function openIncluding() {
-  const opened = await openStudio();
+  const page = await openStudio();
   const files = [
     ["keys.toml", KEYS],
     ["play.toml", PLAY],
     ["planks.jpg", JPEG],
   ];
-  await give(opened.page, ...files);
-  await opened.page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 3);
-  await opened.page.click("#tab-layers");
-  return opened;
+  await give(page, ...files);
+  await page.waitForFunction(() => document.querySelectorAll("#panel-layers .layer").length === 3);
+  await page.click("#tab-layers");
+  return page;
 }
 
 export const tabsOf = (page) => page.locator("#file-tabs button").allTextContents();
@@ -176,22 +240,22 @@ const STRIPES = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", `wave = "sine"
 
 /** Opens the page with a large map that shows the stripes. */
 export async function openWide() {
-  const opened = await openStudio();
-  await opened.page.setViewportSize({ width: 1920, height: 1200 });
-  await opened.page.click("#toggle-drawer");
-  await opened.page.evaluate((text) => played(text), STRIPES);
-  await opened.page.waitForFunction(() => {
+  const page = await openStudio();
+  await resize(page, [1920, 1200]);
+  await page.click("#toggle-drawer");
+  await writeScene(page, STRIPES);
+  await page.waitForFunction(() => {
     const at = (xMm) => studioPage.map.frictionAt(xMm, 40);
     return at(5) - at(15) > 0.09 && at(45) - at(55) > 0.09;
   });
-  return opened;
+  return page;
 }
 
 /** Begins a blind comparison of the first scene and another. */
 export async function compareBlind(page) {
   await page.click("#tab-compare");
   await page.click("text=Keep this scene as A");
-  await page.evaluate((text) => played(text), WHOLE_SCREEN_GRATING);
+  await writeScene(page, WHOLE_SCREEN_GRATING);
   await page.click("text=Compare A with the scene now");
   await page.locator("body.blind").waitFor();
 }

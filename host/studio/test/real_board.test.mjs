@@ -1,17 +1,15 @@
 // A board with an electrode: what it takes to arm it, and what disarms it.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { before, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import {
-  addSerialPort, boardTime, cleanUp, CONSTANT, openPage, setVisibility, slowHost, startRealBoard, stateOf,
+  addSerialPort, boardTime, CONSTANT, forAllTests, openPage, setVisibility, slowHost, startRealBoard, stateOf,
 } from "./harness.mjs";
 
 const FOUR_LAYERS = CONSTANT + '[[layer]]\nkind = "constant"\nabove = "natural"\nfriction_n = 0.01\n'.repeat(3);
 const NO_DRIVE = CONSTANT.replace("0.11", "0.0");
 const MISTAKEN = CONSTANT.replace('"constant"', '"constan"');
-
-after(cleanUp);
 
 /** Resolves once Arm can be pressed: the gallery may be drawing its maps, and each check waits for one. */
 async function armable(page) {
@@ -24,20 +22,20 @@ const checkSays = (page, words) =>
 const linkTo = (text) => deflateRawSync(JSON.stringify({ name: "foreign", text, files: {} })).toString("base64url");
 const openLink = (page, text) => page.evaluate((hash) => (location.hash = hash), `scene=${linkTo(text)}`);
 
-/** The page with a board that is connected and has this scene, as a person does it. */
-async function connected() {
+/** The page with a board that is connected and has this scene, as a person does it. Before, the page runs `prepare`. */
+async function connected(prepare = () => {}) {
   const board = await startRealBoard();
-  const opened = await openPage(undefined, { init: slowHost });
-  const { page } = opened;
+  const page = await openPage(undefined, { init: slowHost });
   await page.waitForFunction(() => globalThis.studioPage);
   await checkSays(page, "plays");
+  await page.evaluate(prepare);
   await addSerialPort(page, board.terminal);
   await write(page, CONSTANT);
   await checkSays(page, "plays");
   await page.click("#open-board");
   await page.click("text=Board on a USB port");
   await armable(page);
-  return { ...opened, board };
+  return { page, board };
 }
 
 /** Writes this text in place of the scene's, as a person types it. */
@@ -46,9 +44,9 @@ function write(page, text) {
 }
 
 /** One page with one board for all tests: each of them begins by arming it, and leaves it disarmed. */
-let page, board, errors, close;
+let page, board;
 before(async () => {
-  ({ page, board, errors, close } = await connected());
+  ({ page, board } = await forAllTests(connected));
 });
 
 async function pressArm() {
@@ -315,23 +313,20 @@ test("with a board connected no ghost finger slides, and no touch is sent", asyn
 
 test("a page that is closed leaves no board armed", async () => {
   await pressArm();
-  assert.deepEqual(errors, []);
-  await close();
+  await page.context().close();
   await board.until("disarmed", stateOf.disarmed);
 });
 
 test("leaving a board disarms it, however late the bytes come that do", async () => {
-  const { page, board, close } = await connected({
-    init: () => {
-      globalThis.portDelayMs = 0;
-      const { get, set } = Object.getOwnPropertyDescriptor(MessagePort.prototype, "onmessage");
-      Object.defineProperty(MessagePort.prototype, "onmessage", {
-        get,
-        set(take) {
-          set.call(this, (event) => (portDelayMs > 0 ? setTimeout(take, portDelayMs, event) : take(event)));
-        },
-      });
-    },
+  const { page, board } = await connected(() => {
+    globalThis.portDelayMs = 0;
+    const { get, set } = Object.getOwnPropertyDescriptor(MessagePort.prototype, "onmessage");
+    Object.defineProperty(MessagePort.prototype, "onmessage", {
+      get,
+      set(take) {
+        set.call(this, (event) => (portDelayMs > 0 ? setTimeout(take, portDelayMs, event) : take(event)));
+      },
+    });
   });
   await page.click("#arm");
   await board.until("driving", stateOf.driving);
@@ -340,5 +335,4 @@ test("leaving a board disarms it, however late the bytes come that do", async ()
   await page.evaluate(() => (globalThis.portDelayMs = 50));
   await page.click("#board-dialog >> text=Simulator");
   await board.assertDisarmed(from, "leaving");
-  await close();
 });

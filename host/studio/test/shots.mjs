@@ -3,7 +3,7 @@
 
 import fs from "node:fs";
 import path from "node:path";
-import { cleanUp, openPage } from "./harness.mjs";
+import { endFile, endTest, openPage } from "./harness.mjs";
 import { give, openStudio } from "./page.mjs";
 
 const OUT = new URL("../../../docs/studio/", import.meta.url).pathname;
@@ -11,11 +11,11 @@ const wanted = process.argv.slice(2);
 
 /** Opens the studio; `size` is that of the window. With `isFirstVisit`, text and tools are closed. */
 async function open({ size = { width: 1440, height: 900 }, scheme = "light", isFirstVisit = false } = {}) {
-  const { page, close } = await openStudio(undefined, { isFirstVisit });
+  const page = await openStudio(undefined, { isFirstVisit });
   await page.setViewportSize(size);
   await page.emulateMedia({ colorScheme: scheme });
   await page.waitForTimeout(300);
-  return { page, close };
+  return page;
 }
 
 /** Slides twice to the right, and leaves the finger down. */
@@ -52,38 +52,34 @@ const shot = (page, name) => page.screenshot({ path: path.join(OUT, `${name}.png
 
 const SHOTS = {
   async play() {
-    const { page, close } = await open({ isFirstVisit: true });
+    const page = await open({ isFirstVisit: true });
     await slide(page);
     await shot(page, "play");
-    await close();
   },
   async sound() {
-    const { page, close } = await open({ scheme: "dark" });
+    const page = await open({ scheme: "dark" });
     await page.click("#tab-sound");
     await page.click("text=Sound on");
     await page.locator("#panel-sound >> text=Sound off").waitFor();
     await slide(page);
     await shot(page, "sound");
-    await close();
   },
   async size() {
-    const { page, close } = await open();
+    const page = await open();
     await page.click("summary:has-text('Options')");
     await page.click("#real-size");
     await page.waitForTimeout(300);
     await shot(page, "size");
-    await close();
   },
   async draft() {
-    const { page, close } = await open();
+    const page = await open();
     await bundled(page, "grating");
     await change(page, "high_n = 0.1", "high_n = 0.2");
     await slide(page);
     await shot(page, "draft");
-    await close();
   },
   async files() {
-    const { page, close } = await open();
+    const page = await open();
     const keys = `version = 1
 
 # Twelve keys.
@@ -107,32 +103,28 @@ live = true
     await page.click("#problems button");
     await page.waitForTimeout(500);
     await shot(page, "files");
-    await close();
   },
   async mistake() {
-    const { page, close } = await open();
+    const page = await open();
     await bundled(page, "grating");
     await change(page, 'kind = "grating"', 'kind = "gratin"');
     await page.click("#problems button");
     await page.waitForTimeout(400);
     await shot(page, "mistake");
-    await close();
   },
   async gallery() {
-    const { page, close } = await open({ scheme: "dark" });
+    const page = await open({ scheme: "dark" });
     await page.click("#open-gallery");
     await page.waitForTimeout(6000);
     await shot(page, "gallery");
-    await close();
   },
   async tablet() {
-    const { page, close } = await open({ size: { width: 820, height: 1180 }, isFirstVisit: true });
+    const page = await open({ size: { width: 820, height: 1180 }, isFirstVisit: true });
     await slide(page);
     await shot(page, "tablet");
-    await close();
   },
   async mockup() {
-    const { page, close } = await open();
+    const page = await open();
     await bundled(page, "slider");
     await page.click("#options summary");
     await page.selectOption("#look", "both");
@@ -140,10 +132,9 @@ live = true
     await page.waitForTimeout(500);
     await slide(page);
     await shot(page, "mockup");
-    await close();
   },
   async compare() {
-    const { page, close } = await open();
+    const page = await open();
     await page.click("#tab-compare");
     await page.click("text=Keep this scene as A");
     await bundled(page, "grating");
@@ -151,7 +142,6 @@ live = true
     await page.waitForTimeout(800);
     await slide(page);
     await shot(page, "compare");
-    await close();
   },
   async board() {
     for (const [name, state] of Object.entries({
@@ -159,7 +149,7 @@ live = true
       "board-armed": { link: "serial", state: "active", needsArm: false },
       "board-faulted": { link: "serial", state: "faulted", needsArm: false, fault: "the arm switch was released" },
     })) {
-      const { page, close } = await open();
+      const page = await open();
       await page.evaluate((state) => {
         const driving = "board nucleo-g474re with an electrode, up to 50 V peak";
         const { engine } = studioPage;
@@ -170,11 +160,10 @@ live = true
       }, state);
       await page.waitForTimeout(300);
       await page.screenshot({ path: path.join(OUT, `${name}.png`), clip: { x: 0, y: 0, width: 1440, height: 360 } });
-      await close();
     }
   },
   async element() {
-    const { page, close } = await openPage(new URL("../../../docs/gallery/index.html", import.meta.url).href);
+    const page = await openPage(new URL("../../../docs/gallery/index.html", import.meta.url).href);
     await page.setViewportSize({ width: 1000, height: 900 });
     const canvas = page.locator("frixel-scene[scene=brick] #map-finger");
     await canvas.waitFor();
@@ -185,10 +174,13 @@ live = true
     await page.mouse.down();
     await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.6 * box.height, { steps: 140 });
     await page.screenshot({ path: path.join(OUT, "element.png") });
-    await close();
   },
 };
 
 if (wanted.length === 0) for (const name of fs.readdirSync(OUT)) fs.rmSync(path.join(OUT, name));
-for (const [name, take] of Object.entries(SHOTS)) if (wanted.length === 0 || wanted.includes(name)) await take();
-await cleanUp();
+for (const [name, take] of Object.entries(SHOTS)) {
+  if (wanted.length > 0 && !wanted.includes(name)) continue;
+  await take();
+  await endTest();
+}
+await endFile();

@@ -1,10 +1,8 @@
 // The engine's workers: whatever ends or fails, every question has an answer.
 
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
-import { CONSTANT, cleanUp, openOnlyEngine } from "./harness.mjs";
-
-after(cleanUp);
+import { test } from "node:test";
+import { CONSTANT, openOnlyEngine } from "./harness.mjs";
 
 /** Runs in the page: the outcome of a promise as a sentence, also where it never settles. */
 function addOutcome() {
@@ -15,8 +13,8 @@ function addOutcome() {
     ]);
 }
 
-test("what is asked while the simulator is reset is rejected, and only one reset runs at a time", async () => {
-  const { page, errors, close } = await openOnlyEngine();
+test("what is asked while the simulator is reset, or of a worker that fails, is rejected, and a reset mends it", async () => {
+  const page = await openOnlyEngine();
   await page.evaluate(addOutcome);
   const outcomes = await page.evaluate(async (text) => {
     const play = () => tested.play({ "a.toml": text }, "a.toml", {});
@@ -31,14 +29,8 @@ test("what is asked while the simulator is reset is rejected, and only one reset
   assert.equal(outcomes.first, "done");
   assert.match(outcomes.second, /wait until that is done/);
   assert.equal(outcomes.after, "done");
-  assert.deepEqual(errors, []);
-  await close();
-});
 
-test("what a worker was asked is rejected when it fails, and the simulator can be started again", async () => {
-  const { page, close } = await openOnlyEngine();
-  await page.evaluate(addOutcome);
-  const outcomes = await page.evaluate(async (text) => {
+  const failed = await page.evaluate(async (text) => {
     const failures = [];
     tested.onFailure = ({ error }) => failures.push(error);
     const play = () => tested.play({ "a.toml": text }, "a.toml", {});
@@ -52,10 +44,9 @@ test("what a worker was asked is rejected when it fails, and the simulator can b
     fail("host");
     return { ...found, simulate: await outcome(tested.simulate()), after: await outcome(play()), failures };
   }, CONSTANT);
-  assert.match(outcomes.asked, /the board worker: out of memory/);
-  assert.match(outcomes.later, /the board worker: out of memory/);
-  assert.equal(outcomes.simulate, "done");
-  assert.equal(outcomes.after, "done");
-  assert.deepEqual(outcomes.failures, ["the board worker: out of memory", "the host worker: out of memory"]);
-  await close();
+  assert.match(failed.asked, /the board worker: out of memory/);
+  assert.match(failed.later, /the board worker: out of memory/);
+  assert.equal(failed.simulate, "done");
+  assert.equal(failed.after, "done");
+  assert.deepEqual(failed.failures, ["the board worker: out of memory", "the host worker: out of memory"]);
 });
