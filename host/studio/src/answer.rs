@@ -84,9 +84,9 @@ pub(crate) fn error(error: &HostError, entry: &str) -> Value {
     json!({ "error": error.to_string(), "problems": problems, "isLinkLost": error.is_link_lost() })
 }
 
-/// A board that was connected to: `driving`, what Arm drives, and `isSimulated`.
+/// A board that was connected to: `driving`, what Arm drives.
 pub(crate) fn board(hello: &Hello) -> Value {
-    json!({ "driving": driven_board(hello), "isSimulated": hello.board.is_simulated() })
+    json!({ "driving": driven_board(hello) })
 }
 
 /// What Arm drives, in words that stand on its button: with the board's notices, which a person reads before the press.

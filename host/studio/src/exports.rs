@@ -207,7 +207,7 @@ pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
 
 /// Connects to the board at the other end of the stream. Suspends.
 ///
-/// The answer has `driving`, a sentence, and `isSimulated`.
+/// The answer has `driving`, a sentence.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_connect() -> i32 {
     respond(|| {

@@ -19,6 +19,7 @@ async function playOnVirtualBoard(scene) {
       const files = await sceneFiles(name);
       files[name] += `\n[drive]\nhost_timeout_ms = ${hostTimeoutMs}\n`;
       await tested.play(files, name, {});
+      await tested.arm();
     },
     [scene, HOST_TIMEOUT_MS],
   );
@@ -50,7 +51,7 @@ test("a scene is played, changed and stopped on a board at a serial port", async
   const seen = await page.evaluate(() => ({ frame: felt.at(-1), link: states.at(-1) }));
   assert.equal(seen.frame.simulated, false);
   assert.equal(seen.link.link, "serial");
-  assert.equal(seen.link.needsArm, false, "a simulated board needs no press");
+  assert.equal(seen.link.needsArm, false, "it is armed");
   const refused = await page.evaluate(() => tested.control('layer "nothing" off').catch((error) => error.message));
   assert.match(refused, /the scene has no layer "nothing"/);
   const mistake = await page.evaluate(

@@ -126,18 +126,12 @@ export async function openPage(url = pageUrl, { init, isSimulated = false, mayFa
   return page;
 }
 
-/** Opens the page with an engine of the test's own: see `addOnlyEngine`. */
+/**
+ * Opens the page with an engine of the test's own, as `tested`, and a function `sceneFiles(name)`. That of the page
+ * itself ends, so that the machine has time for this one.
+ */
 export async function openOnlyEngine(url, options) {
   const page = await openPage(url, options);
-  await addOnlyEngine(page);
-  return page;
-}
-
-/**
- * Gives the page an engine of the test's own, as `tested`, with a function `sceneFiles(name)`. That of the page itself
- * ends, so that the machine has time for this one.
- */
-export async function addOnlyEngine(page) {
   await page.waitForFunction(() => globalThis.studioPage);
   await page.evaluate(async () => {
     studioPage.engine.close();
@@ -165,6 +159,7 @@ export async function addOnlyEngine(page) {
       }
     };
   });
+  return page;
 }
 
 /** Starts `frixel sim`; returns its terminal, the folder of its log, and `stop()`. */

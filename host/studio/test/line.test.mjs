@@ -3,8 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  addOnlyEngine, addSerialPort, boardTime, CONSTANT, openOnlyEngine, openPage, setVisibility, startRealBoard,
-  stateOf,
+  addSerialPort, boardTime, CONSTANT, openOnlyEngine, setVisibility, startRealBoard, stateOf,
 } from "./harness.mjs";
 import { answeredIn, framesIn, requestIn } from "./wire.mjs";
 
@@ -199,40 +198,4 @@ test("a port can be connected again after a failed connection and after a lost l
   await board.assertDisarmed(from, "connecting again");
   await page.evaluate(() => tested.simulate());
   assert.ok(!(await isOpen()));
-});
-
-/** Runs in the page: hosts that start from now on take a board for a simulated one, which refuses to play once, later. */
-function refuseOnce() {
-  const text = studio.text;
-  studio.text = async (name) =>
-    name !== "engine/host.js"
-      ? text(name)
-      : `${await text(name)}
-        const call = Engine.prototype.callSuspending;
-        let plays = 0;
-        Engine.prototype.callSuspending = async function (name, ...rest) {
-          if (name === "host_play" && ++plays === 2) throw new EngineError({ error: "refused: not now", problems: [] });
-          const answer = await call.call(this, name, ...rest);
-          return name === "host_connect" ? { ...answer, isSimulated: true } : answer;
-        };`;
-}
-
-test("a simulated board that refuses to play once is not lost, and plays again", async () => {
-  const board = await startRealBoard();
-  const page = await openPage();
-  await page.waitForFunction(() => globalThis.studioPage);
-  await page.evaluate(refuseOnce);
-  await addOnlyEngine(page);
-  await addSerialPort(page, board.terminal);
-  await page.evaluate(async (text) => {
-    await tested.connectSerial(serialPort);
-    await tested.play({ "a.toml": text }, "a.toml", {});
-  }, CONSTANT);
-  await board.until("driving", stateOf.active);
-  // The board's host timeout disarms it, and the page, once it is back, plays on.
-  await setVisibility(page, "hidden");
-  await board.until("disarmed", stateOf.disarmed);
-  await setVisibility(page, "visible");
-  await board.until("active again", stateOf.active);
-  assert.ok(!(await page.evaluate(() => states.some(({ link }) => link === "none"))), "the board is never lost");
 });

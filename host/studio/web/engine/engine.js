@@ -342,26 +342,20 @@ export class Engine {
     });
   }
 
-  /** @param {SerialPort} port */
-  connectSerial(port) {
-    return this.#connect("serial", () => serialLine(port));
-  }
-
   /**
    * Connects to a board. If that fails, the simulator stays, if it was the board before, and plays on.
-   * @param {T.State["link"]} link
-   * @param {() => Promise<T.Line>} open
+   * @param {SerialPort} port
    */
-  async #connect(link, open) {
+  async connectSerial(port) {
     if (!canSuspend) throw new Error(NO_JSPI);
     await this.#change(async () => {
       try {
         await this.#disconnect();
         if (this.#link !== "simulator") this.#reportNoBoard();
-        this.#line = await open();
+        this.#line = await serialLine(port);
         const { remote } = this.#line;
         await this.#host.ask({ type: "connect", port: remote }, [remote]);
-        this.#link = link;
+        this.#link = "serial";
       } catch (error) {
         await this.#disconnect();
         throw error;

@@ -49,7 +49,7 @@ serve({
   },
   gone() {
     lastLifeMs = -Infinity;
-    // A board with an electrode need not wait for its host timeout. If this fails, the page has been told.
-    if (board && !board.isSimulated) board.stop().catch(() => {});
+    // The board need not wait for its host timeout. If this fails, the page has been told.
+    board?.stop().catch(() => {});
   },
 });

@@ -1,4 +1,4 @@
-// Lines to boards outside of the page, each as a MessagePort that carries bytes. Empty bytes close it.
+// The line to a board outside of the page, as a MessagePort that carries bytes. Empty bytes close it.
 // @ts-check
 
 /** @import { Line } from "./types" */
@@ -13,35 +13,52 @@ const CLOSE_MAX_MS = 500;
 /**
  * A line over Web Serial.
  * @param {SerialPort} port The user has chosen it.
+ * @returns {Promise<Line>}
  */
 export async function serialLine(port) {
   await port.open({ baudRate: BAUD, bufferSize: 16384 });
   const writer = port.writable.getWriter();
   const reader = port.readable.getReader();
-  return line((local) => {
-    readAll(reader, local);
-    return {
-      write: (bytes) => writer.write(bytes),
-      close: () => closePort(port, reader, writer),
-    };
-  });
+  const { port1: local, port2: remote } = new MessageChannel();
+  /** @type {PromiseWithResolvers<void>} */
+  const { promise: closed, resolve } = Promise.withResolvers();
+  let isOpen = true;
+  const close = () => {
+    if (!isOpen) return;
+    isOpen = false;
+    local.postMessage(new Uint8Array());
+    closePort(port, reader, writer).finally(() => {
+      local.close();
+      resolve();
+    });
+  };
+  local.onmessage = async ({ data }) => {
+    try {
+      if (data.length === 0) close();
+      else if (isOpen) await writer.write(data);
+    } catch {
+      close();
+    }
+  };
+  readAll(reader, (bytes) => local.postMessage(bytes)).finally(close);
+  return { remote, close, closed };
 }
 
 /**
+ * Gives on all bytes that come, until the end of the line.
  * @param {ReadableStreamDefaultReader<Uint8Array<ArrayBuffer>>} reader
- * @param {Local} local
+ * @param {(bytes: Uint8Array<ArrayBuffer>) => void} give
  */
-async function readAll(reader, local) {
+async function readAll(reader, give) {
   try {
     for (;;) {
       const { value, done } = await reader.read();
-      if (done) break;
-      if (value.length > 0) local.receive(value);
+      if (done) return;
+      if (value.length > 0) give(value);
     }
   } catch {
-    // The cable was pulled: the end of the line says so.
+    // The cable was pulled.
   }
-  local.close();
 }
 
 /**
@@ -65,42 +82,4 @@ async function closePort(port, reader, writer) {
  */
 function ended(promise) {
   return Promise.race([promise.catch(() => {}), after(CLOSE_MAX_MS)]);
-}
-
-/**
- * The end of a line in the page: takes what has arrived, and closes the line.
- * @typedef {{ receive: (bytes: Uint8Array<ArrayBuffer>) => void, close: () => void }} Local
- */
-
-/**
- * A line whose far end `open` connects: both functions that it returns may fail or take their time.
- * @param {(local: Local) => {
- *   write: (bytes: Uint8Array<ArrayBuffer>) => Promise<void>, close: () => Promise<void>,
- * }} open
- * @returns {Line}
- */
-function line(open) {
-  const { port1: local, port2: remote } = new MessageChannel();
-  /** @type {PromiseWithResolvers<void>} */
-  const { promise: closed, resolve } = Promise.withResolvers();
-  let isOpen = true;
-  const close = () => {
-    if (!isOpen) return;
-    isOpen = false;
-    local.postMessage(new Uint8Array());
-    far.close().finally(() => {
-      local.close();
-      resolve();
-    });
-  };
-  const far = open({ receive: (bytes) => local.postMessage(bytes), close });
-  local.onmessage = async ({ data }) => {
-    try {
-      if (data.length === 0) close();
-      else if (isOpen) await far.write(data);
-    } catch {
-      close();
-    }
-  };
-  return { remote, close, closed };
 }

@@ -13,8 +13,6 @@ const WAIT_MS = 10;
  * are then due, and shorter than the time after which a board counts as silent.
  */
 const PAUSE_MAX_MS = 250;
-/** A simulated board that refuses to play is asked again after this time, ms. */
-const ASK_AGAIN_MS = 250;
 /** What the imports of the module return when the stream is closed. */
 const CLOSED = -1;
 const STOPPED = "stopped: the board was disarmed meanwhile";
@@ -44,10 +42,6 @@ class RemoteBoard {
   #newest = 0;
   /** @type {string | null} */
   #fault = null;
-  /** Until then a simulated board that has refused to play is not asked again, on the worker's clock, ms. */
-  #refusedUntilMs = 0;
-  isSimulated = true;
-  isWanted = false;
   /** Whether the board has the newest scene: nothing else can be armed. */
   isLoaded = false;
   /** @type {T.BoardState} */
@@ -151,9 +145,9 @@ class RemoteBoard {
     return called;
   }
 
-  /** The error of a call that a stop has broken off. A simulated board would play what is loaded again. */
+  /** The error of a call that a stop has broken off. */
   #stopped() {
-    return Object.assign(new Error(STOPPED), { canLoadAgain: this.#isOpen && !this.isSimulated });
+    return Object.assign(new Error(STOPPED), { canLoadAgain: this.#isOpen });
   }
 
   /** Keeps the board alive for as long as the page is. */
@@ -174,8 +168,6 @@ class RemoteBoard {
       this.#stream.hasDropped = false;
       await this.#disarm();
     }
-    const isAsked = this.isSimulated && this.isWanted && this.state === "disarmed";
-    if (isAsked && performance.now() >= this.#refusedUntilMs) await this.#playAgain();
     const { state, fault, telemetry } = await this.#call("host_wait", null, WAIT_MS);
     this.state = state;
     this.#fault = fault;
@@ -183,19 +175,9 @@ class RemoteBoard {
     if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry) });
   }
 
-  /** A simulated board that was disarmed plays on. One that refuses is there: its state, which is read next, says why. */
-  async #playAgain() {
-    try {
-      await this.#call("host_play");
-    } catch (error) {
-      if (!(error instanceof EngineError) || error.isLinkLost) throw error;
-      this.#refusedUntilMs = performance.now() + ASK_AGAIN_MS;
-    }
-  }
-
   report() {
     if (!this.#isOpen) return;
-    const needsArm = !this.isSimulated && this.isLoaded && this.state === "disarmed";
+    const needsArm = this.isLoaded && this.state === "disarmed";
     tell({ type: "state", state: this.state, fault: this.#fault, needsArm, driving: this.driving });
   }
 
@@ -206,9 +188,11 @@ class RemoteBoard {
     return this.#newest;
   }
 
-  /** @param {T.Request} scene */
+  /**
+   * Loads a scene, which waits for an explicit press.
+   * @param {T.Request} scene
+   */
   async play(scene) {
-    const round = this.#round;
     const number = this.#expectScene();
     try {
       await this.#call("host_load", requestOf(scene));
@@ -217,36 +201,25 @@ class RemoteBoard {
       // Before the answer: who waits for it knows whether the scene can be armed.
       this.report();
     }
-    // A board with an electrode waits for an explicit press.
-    if (!this.isSimulated) return;
-    if (round !== this.#round) throw this.#stopped();
-    await this.#drive();
   }
 
   /** Arms the board. */
   arm() {
     // After a refused load the board has another scene than the page.
     if (!this.isLoaded) throw new Error("no scene is on the board: open one that it does not refuse");
-    return this.#drive();
-  }
-
-  async #drive() {
-    this.isWanted = true;
-    await this.#call("host_play");
+    return this.#call("host_play");
   }
 
   /** Breaks off whatever is under way, and disarms the board. */
   async stop() {
-    this.isWanted = false;
     await this.#disarm();
     // A hidden page hears nothing more of the board until it is visible again.
     if (this.state !== "faulted") [this.state, this.#fault] = ["disarmed", null];
     this.report();
   }
 
-  /** Disarms a board with an electrode, which cannot be armed before another scene is loaded. */
+  /** Disarms the board, which cannot be armed before another scene is loaded. */
   async forget() {
-    if (this.isSimulated) return;
     this.#expectScene();
     await this.stop();
   }
