@@ -242,23 +242,24 @@ mod tests {
     /// Lines and columns of a terminal that shows a command's help without scrolling.
     const SCREEN: (usize, usize) = (40, 120);
 
-    fn check_help(command: &mut clap::Command, name: &str) {
-        for help in [command.render_help(), command.render_long_help()] {
-            let text = help.to_string();
-            let lines = text.lines().map(|line| line.chars().count().div_ceil(SCREEN.1).max(1)).sum::<usize>();
-            assert!(lines <= SCREEN.0, "{lines} lines of help of {name}:\n{text}");
-        }
-        for nested in command.get_subcommands_mut() {
-            let name = format!("{name} {}", nested.get_name());
-            check_help(nested, &name);
-        }
+    /// The words of every command, `frixel` alone first.
+    fn names(command: &clap::Command, of: &[String]) -> Vec<Vec<String>> {
+        let name = [of, &[command.get_name().to_owned()]].concat();
+        let nested = command.get_subcommands().flat_map(|nested| names(nested, &name));
+        std::iter::once(name.clone()).chain(nested).collect()
     }
 
     #[test]
     fn the_help_of_each_command_fits_a_screen() {
-        let mut cli = Cli::command();
-        cli.build();
-        check_help(&mut cli, "frixel");
+        for (name, option) in
+            names(&Cli::command(), &[]).into_iter().flat_map(|name| [(name.clone(), "-h"), (name, "--help")])
+        {
+            let line = [&name[..], &[option.to_owned()]].concat();
+            let text = Cli::try_parse_from(line).unwrap_err().to_string();
+            assert!(text.contains("Usage: "), "{name:?} {option}: {text}");
+            let lines = text.lines().map(|line| line.chars().count().div_ceil(SCREEN.1).max(1)).sum::<usize>();
+            assert!(lines <= SCREEN.0, "{lines} lines of help of {name:?} {option}:\n{text}");
+        }
     }
 
     /// No document has the columns and the statuses of the model's rows.

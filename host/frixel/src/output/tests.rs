@@ -427,7 +427,7 @@ fn report_as_json() {
          \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\
          \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
-         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"untouched_layers\":[],\"replaced_at_s\":null}"
+         \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"in_this_play\":null,\"untouched_layers\":[],\"replaced_at_s\":null}"
     );
     assert_eq!(
         report(&known).summary(),
