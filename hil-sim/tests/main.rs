@@ -1,5 +1,6 @@
 //! The tests of the crate as a whole, one program for all of them.
 
+mod amplifier;
 mod chips;
 mod dac;
 mod live;

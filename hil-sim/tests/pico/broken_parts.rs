@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use frixel_driver::{DeviceError, to_the_end};
-use frixel_hil_sim::emulated::BrokenInputs;
+use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
 use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::Refusal;
 
 use super::bench::{Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
@@ -94,6 +95,16 @@ fn a_one_shot_that_hangs_does_not_hold_the_enable() {
     assert!(bench.with(|rig| rig.zero_since()).is_some(), "the enable is low, and the code zero");
 }
 
+#[test]
+fn a_switch_that_is_welded_from_power_on_does_not_arm() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::just_on(&image);
+    bench.with(|rig| rig.broken.arm_switch = Some(true));
+    bench.pass(Duration::from_millis(60));
+    let refused = try_to_play(&mut bench.connect()).unwrap_err();
+    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::ArmSwitch, .. }), "{refused}");
+}
+
 /// A DAC that is not there when the board arms is a fault, and one that comes later plays.
 #[test]
 fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
@@ -113,6 +124,20 @@ fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
     host.clear_fault().unwrap();
     press_again(&bench);
     bench.start(&mut host, CONSTANT);
+}
+
+/// A DAC whose answers never come, as with a broken wire.
+#[test]
+fn a_dac_that_does_not_answer_is_a_fault() {
+    let Some(image) = emulator::pico_image() else { return };
+    let bench = Bench::new(&image);
+    bench.with(|rig: &mut PicoRig| rig.dac().connect_sdo(false));
+    let mut host = bench.connect();
+    let _ = try_to_play(&mut host);
+    drop(host);
+    let hello = *bench.connect().hello();
+    assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(Fault::Dac)));
+    assert!(bench.with(|rig| rig.zero_since()).is_some());
 }
 
 /// Lets the arm switch go, and presses it again.

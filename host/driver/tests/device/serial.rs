@@ -55,7 +55,7 @@ fn a_scene_plays_over_a_serial_port() {
     assert_eq!(board.line.lock().unwrap().state, State::Active);
 }
 
-/// That they end when the application hangs, the player's tests show in virtual time.
+/// That they end when the application hangs, `host/python/tests` shows.
 #[test]
 fn pings_go_out_while_nobody_calls() {
     let board = PtyBoard::start();
