@@ -8,11 +8,11 @@ use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
 use crate::output_file::{Inputs, OutputFile, commit_all};
 use anyhow::{Result, anyhow, bail};
+use chrono::Utc;
 use clap::{Args, ValueEnum};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, FingerProfile};
-use time::OffsetDateTime;
 
 use crate::commands::argument::positive;
 use crate::commands::profiles::screen;
@@ -177,7 +177,7 @@ impl Outputs {
 
     fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<()> {
         let method = args.method.clone().unwrap_or_else(|| method_of(fit.division()).to_owned());
-        let date = OffsetDateTime::now_utc().date().to_string();
+        let date = Utc::now().date_naive().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
         let mut written = vec![self.profile.filled(fit.profile(experiment).to_toml().as_bytes())?];
         if let (Some(plots), Fitted::Contact(fit)) = (&self.plots, fit) {

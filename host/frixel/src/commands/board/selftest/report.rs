@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use chrono::Utc;
 use frixel_board::self_test::{LineTest, Measurement, Said};
 use serde::Serialize;
-use time::OffsetDateTime;
 
 /// What the file is, and the version of its form.
 const FORMAT: &str = "frixel self-test";
@@ -54,7 +54,7 @@ impl Report {
             format: FORMAT,
             version: VERSION,
             frixel: env!("CARGO_PKG_VERSION"),
-            begun_unix_s: OffsetDateTime::now_utc().unix_timestamp(),
+            begun_unix_s: Utc::now().timestamp(),
             board: String::new(),
             script_version: 0,
             passed: false,
