@@ -37,7 +37,7 @@ const PARTS: [Part; 11] = [
     },
     Part {
         name: "fit",
-        what: "`frixel finger calibrate` and `fit` of 200 people with 20 seeds each, against steady friction",
+        what: "`frixel finger calibrate` and `frixel finger fit` of 200 people with 20 seeds each, against steady friction",
         needs: &[],
         run: fit,
     },

@@ -1,4 +1,5 @@
-//! `frixel scene` as a person uses it: numbers, pictures, and what it says to wrong input.
+//! `frixel check`, `frixel preview` and `frixel schema` as a person uses them: numbers, pictures, and what they say to
+//! wrong input.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;

@@ -22,7 +22,7 @@ pub struct Element {
     pub(super) title: LayerTitle,
     pub(super) program: Program,
     pub(super) burst: Option<Burst>,
-    /// Whether the layer is off until a program or a person switches it on.
+    /// Whether the layer is on when it is to be felt: a program or a person switches it on, or it was played.
     pub(super) is_triggered: bool,
     /// The way across it; absent for one that was played already.
     pub(super) way: Option<Way>,
@@ -70,7 +70,7 @@ impl Element {
             _ => None,
         };
         let title = program.titles.get(layer)?.clone();
-        Some(Self { layer, title, program: program.clone(), burst, is_triggered: false, way: None })
+        Some(Self { layer, title, program: program.clone(), burst, is_triggered: true, way: None })
     }
 
     /// The program that plays while the element is judged: the element is on, and pauses between bursts are short.

@@ -121,7 +121,9 @@ impl<'e> Measure<'e> {
             let fingertip = Fingertip::of(run);
             border = surest(border, self.borders.met(run, &fingertip), |border| border.step);
             click = surest(click, self.click(run), |click| click.step);
-            let own = self.own_n(run);
+            let own_n = self.own_n(run);
+            let felt_n: Vec<f64> = run.iter().map(|moment| moment.felt_n).collect();
+            let smooth_felt_n = fingertip.smoothed(&felt_n, 0..run.len());
             for range in stretches(run, |moment| moment.is_on(self.element.layer)) {
                 let on_layer = run.get(range.clone()).unwrap_or_default();
                 for moment in on_layer {
@@ -132,7 +134,7 @@ impl<'e> Measure<'e> {
                 let alone = stretches(on_layer, is_uppermost);
                 alone.into_iter().flat_map(|alone| inner(&on_layer[alone])).for_each(|moment| uppermost.add(moment));
                 self.add_directions(on_layer, &mut by_direction);
-                touches.push(self.touch(run, range, &own, &fingertip, &mut whole_n));
+                touches.push(self.touch(run, range, [&own_n, &smooth_felt_n], &fingertip, &mut whole_n));
             }
         }
         let first = *touches.first()?;
@@ -169,12 +171,13 @@ impl<'e> Measure<'e> {
         run.iter().map(own_n).collect()
     }
 
-    /// Measures a stretch of a run on the element.
+    /// Measures a stretch of a run on the element: `own_n` is the scene's friction along the run, `felt_n` the friction
+    /// that was felt, as far as a fingertip resolves it.
     fn touch(
         &self,
         run: &[Moment],
         range: Range<usize>,
-        own_n: &[f64],
+        [own_n, felt_n]: [&[f64]; 2],
         fingertip: &Fingertip,
         whole_n: &mut Vec<f64>,
     ) -> Touch {
@@ -184,8 +187,6 @@ impl<'e> Measure<'e> {
             let moments = run.get(range.clone()).unwrap_or_default();
             moments.iter().map(|moment| moment.electric_n(below, program)).sum::<f64>() / moments.len().max(1) as f64
         });
-        let felt_n: Vec<f64> = run.iter().map(|moment| moment.felt_n).collect();
-        let felt_n = fingertip.smoothed(&felt_n, 0..felt_n.len());
         let smooth_n = fingertip.smoothed(own_n, range.clone());
         whole_n.extend(smooth_n.iter().map(|own_n| total_n(program, base_n + own_n)));
         let sharp_n = own_n.get(range.clone()).unwrap_or_default();
@@ -212,7 +213,7 @@ impl<'e> Measure<'e> {
             let ((scene, is_narrow), (sharp, _)) = (of_scene(smooth_n), of_scene(sharp_n));
             let start = range.start + way.start;
             let mut likeness = Likeness::default();
-            likeness.add((start..).zip(smooth_n.iter().copied()), &felt_n, &felt_n);
+            likeness.add((start..).zip(smooth_n.iter().copied()), felt_n, felt_n);
             let slope = likeness.slope();
             let mut sums = Sums::default();
             run.get(start..start + way.len()).unwrap_or_default().iter().for_each(|moment| sums.add(moment));

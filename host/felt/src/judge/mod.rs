@@ -28,6 +28,7 @@ mod touch;
 mod way;
 
 use std::cmp::Ordering;
+use std::ops::ControlFlow;
 
 use frixel_hil_sim::Stroke;
 use frixel_layers::{Layer, Stream};
@@ -188,8 +189,8 @@ fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
 pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict {
     let measure = Measure::new(element);
     let speeds = SPEEDS_M_PER_S.iter().zip(felt);
-    let mut plays: Vec<Stroked> = speeds
-        .filter_map(|(speed_m_per_s, samples)| Stroked::of(&measure, Some(*speed_m_per_s), &measure.runs(samples)))
+    let mut plays: Vec<Played> = speeds
+        .filter_map(|(speed_m_per_s, samples)| Played::of(&measure, Some(*speed_m_per_s), &measure.runs(samples)))
         .collect();
     let over = element.over();
     if over == Over::Speed {
@@ -198,23 +199,37 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
     of_plays(element, over, &plays)
 }
 
-/// Judges the elements of a program by what was felt in one play that nothing changed. Elements that the finger never
-/// touched while the board drove the scene are left out.
-pub fn in_play(program: &Program, samples: &[FidelitySample]) -> Vec<LayerVerdict> {
-    let runs = moment::runs(samples, &Reference::at_start(program), program);
+/// Judges the elements of a program by what was felt in one play that nothing changed, whatever its finger, load and
+/// touch source. An element is left out if the finger never slid on it while the board drove the scene, and if its
+/// friction depends on the speed: it is judged by plays of several. `goes_on` is asked before each element; when it
+/// breaks, there is no judgement.
+pub fn in_play(
+    program: &Program,
+    samples: &[FidelitySample],
+    goes_on: &dyn Fn() -> ControlFlow<()>,
+) -> Option<Vec<LayerVerdict>> {
+    let slides = |speed_m_per_s: f64| speed_m_per_s >= SLIDE_MIN_M_PER_S;
+    let sliding = |sample: &FidelitySample| FidelitySample {
+        is_driven: sample.is_driven && sample.speed_m_per_s.is_some_and(slides),
+        ..*sample
+    };
+    let samples: Vec<FidelitySample> = samples.iter().map(sliding).collect();
+    let runs = moment::runs(&samples, &Reference::at_start(program), program);
     let touched = runs.iter().flatten().fold(0, |all, moment| all | moment.visible);
     let layers = (0..program.records.len()).filter(|layer| touched >> layer & 1 == 1);
+    let elements = layers.filter_map(|layer| Element::as_played(program, layer));
     let judged = |element: Element| {
-        let play = Stroked::of(&Measure::new(&element), None, &runs);
-        // Within one play, speed changes along the way.
-        let over = if element.over() == Over::Speed { Over::Place } else { element.over() };
-        of_plays(&element, over, play.as_slice())
+        if goes_on().is_break() {
+            return None;
+        }
+        let play = Played::of(&Measure::new(&element), None, &runs);
+        Some(of_plays(&element, element.over(), play.as_slice()))
     };
-    layers.filter_map(|layer| Element::as_played(program, layer)).map(judged).collect()
+    elements.filter(|element| element.over() != Over::Speed).map(judged).collect()
 }
 
 /// The verdict on an element by the play in which it was felt most surely.
-fn of_plays(element: &Element, over: Over, plays: &[Stroked]) -> LayerVerdict {
+fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
     if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
         return of_stream(element, &stream);
     }
@@ -252,19 +267,22 @@ fn of_plays(element: &Element, over: Over, plays: &[Stroked]) -> LayerVerdict {
     }
 }
 
+/// A slower finger rests, as for the board, m/s: friction does not follow the scene before it slides.
+const SLIDE_MIN_M_PER_S: f64 = 2e-3;
+
 /// A contrast of the scene below it, in Weber steps, is that of a flat layer.
 const FLAT_WEBER_STEPS: f64 = 0.1;
 
-/// What was felt of an element in one play.
+/// What was felt of an element in one play, and what a display without fault would have given.
 #[derive(Clone, Copy)]
-struct Stroked {
+struct Played {
     /// Absent where the speed is not one of the three.
     speed_m_per_s: Option<f64>,
     felt: Measured,
     faultless: Measured,
 }
 
-impl Stroked {
+impl Played {
     /// `None` if the finger was never on the element.
     fn of(measure: &Measure, speed_m_per_s: Option<f64>, runs: &[Vec<Moment>]) -> Option<Self> {
         let faultless = measure.of(&moment::faultless(runs))?;
@@ -273,10 +291,10 @@ impl Stroked {
 }
 
 /// Makes the contrast of a layer that depends on the speed that between the slowest and the fastest play.
-fn over_speed(element: &Element, plays: &mut [Stroked]) {
+fn over_speed(element: &Element, plays: &mut [Played]) {
     let natural_n = element.program.reach.natural_friction_n;
-    let contrast = |measured: fn(&Stroked) -> Measured, plays: &[Stroked]| {
-        let mean_n = |play: &Stroked| natural_n + measured(play).mean_electric_n;
+    let contrast = |measured: fn(&Played) -> Measured, plays: &[Played]| {
+        let mean_n = |play: &Played| natural_n + measured(play).mean_electric_n;
         Some(Step::new(mean_n(plays.first()?), mean_n(plays.last()?)))
     };
     let felt = contrast(|play| play.felt, plays);

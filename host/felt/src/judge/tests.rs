@@ -1,6 +1,7 @@
 //! The judge on displays without a board: each plays the place where the finger was some time ago, with a gain.
 
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 
 use frixel_hil_sim::{Point, Stroke};
 use frixel_scene::Program;
@@ -220,7 +221,7 @@ fn a_play_is_judged_by_its_own_strokes() {
     let stroke = Stroke::constant_speed(Point { x_m: 0.03, y_m: 0.03 }, Point { x_m: 0.075, y_m: 0.03 }, 0.07).unwrap();
     let layers = |display: Display, left: &str| {
         let program = plates(left);
-        in_play(&program, &display.play(&program, &stroke))
+        in_play(&program, &display.play(&program, &stroke), &|| ControlFlow::Continue(())).unwrap()
     };
     let verdicts = |layers: Vec<LayerVerdict>| -> Vec<(String, Verdict)> {
         layers.into_iter().map(|found| (found.layer.to_string(), found.verdict)).collect()
@@ -230,4 +231,16 @@ fn a_play_is_judged_by_its_own_strokes() {
     let forced_to_zero = verdicts(layers(Display { gain: 0.0, late_s: 0.0 }, left));
     assert_eq!(forced_to_zero, [("layer 1 (constant)".to_owned(), Verdict::NotFelt)]);
     assert_eq!(layers(FAULTLESS, &format!("{left}\nlive = true\nstart = \"off\"")), []);
+    let program = plates(left);
+    let still: Vec<FidelitySample> = FAULTLESS
+        .play(&program, &stroke)
+        .iter()
+        .map(|sample| FidelitySample { speed_m_per_s: Some(0.0), natural_n: 0.0, ..*sample })
+        .collect();
+    assert_eq!(
+        in_play(&program, &still, &|| ControlFlow::Continue(())),
+        Some(vec![]),
+        "a finger that rests feels nothing"
+    );
+    assert_eq!(in_play(&program, &FAULTLESS.play(&program, &stroke), &|| ControlFlow::Break(())), None);
 }

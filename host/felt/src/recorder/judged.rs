@@ -5,7 +5,7 @@ use super::{FeltRow, Observation};
 use crate::fidelity::{FidelitySample, SAMPLE_HZ};
 
 /// The longest stretch of a play that is judged, s: its samples take 17 MB.
-pub(super) const JUDGED_MAX_S: f64 = 60.0;
+pub const JUDGED_MAX_S: f64 = 60.0;
 
 /// The samples of a play, [`SAMPLE_HZ`] a second, up to [`JUDGED_MAX_S`].
 #[derive(Debug)]

@@ -24,6 +24,7 @@ use crate::metrics::{Metrics, MetricsSummary, Sample};
 use frixel_scene::reference::{Context, Reference, StrokeReference};
 use frixel_scene::{LayerSetting, Program};
 use inversion::Inversion;
+pub use judged::JUDGED_MAX_S;
 use judged::JudgedSamples;
 pub use listener::PlayListener;
 use marker::Markers;
@@ -191,8 +192,8 @@ impl Recorder {
         self.sent_samples.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Removes the samples of the play's first minute and returns them; `None` without [`Self::judged`], or if something
-    /// changed the scene while it played: a layer, a trigger, a stream or another scene.
+    /// Removes the samples of the play up to [`JUDGED_MAX_S`] and returns them; `None` without [`Self::judged`], or if
+    /// something changed the scene while it played: a layer, a trigger, a stream or another scene.
     pub fn take_judged(&mut self) -> Option<Vec<FidelitySample>> {
         self.judged.take().map(JudgedSamples::into_samples)
     }

@@ -10,6 +10,7 @@ use frixel_driver::{Counters, StreamStatus};
 use frixel_felt::check::feel;
 use frixel_felt::judge::{Judgement, LayerVerdict};
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
+use frixel_felt::recorder::JUDGED_MAX_S;
 use frixel_lab::hash::sha256;
 use frixel_scene::{LayerTitle, Origin, Reach, TouchSource, fold_copies};
 
@@ -81,9 +82,12 @@ pub(crate) struct Report {
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
-    /// What the finger felt of each layer that it touched in the first minute of this play; `null` if something changed
-    /// the scene while it played, or nobody knows what was felt.
+    /// What the finger felt of each layer on which it slid in the first minute of this play while the board drove;
+    /// `null` if something changed the scene while it played, and on a board at a port.
     pub in_this_play: Option<Vec<LayerVerdict>>,
+    /// Whether the play went on after what was judged.
+    #[serde(skip)]
+    pub is_judged_in_part: bool,
     /// The layers of the last scene that the finger never touched.
     pub untouched_layers: Vec<LayerTitle>,
     /// When that scene replaced the one before, s; `null` if the first scene played to the end.
@@ -186,6 +190,7 @@ impl Report {
             stream_underruns: None,
             stream_gaps: None,
             in_this_play: None,
+            is_judged_in_part: false,
             untouched_layers: Vec::new(),
             replaced_at_s: None,
             files: BTreeMap::new(),
@@ -229,10 +234,10 @@ impl Report {
         self
     }
 
-    /// Adds what the finger felt of each layer, if the play was judged.
+    /// Adds what the finger felt of each layer, if the play was judged, which lasted for so many seconds.
     #[must_use]
-    pub(crate) fn with_verdicts(self, in_this_play: Option<Vec<LayerVerdict>>) -> Self {
-        Self { in_this_play, ..self }
+    pub(crate) fn with_verdicts(self, in_this_play: Option<Vec<LayerVerdict>>, seconds: f64) -> Self {
+        Self { in_this_play, is_judged_in_part: seconds > JUDGED_MAX_S, ..self }
     }
 
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
@@ -331,6 +336,9 @@ impl Report {
                     "more" | "note" => line(name, text),
                     verdict => line("in this play", format!("{verdict}: {text}")),
                 }
+            }
+            if self.is_judged_in_part {
+                line("note", format!("verdicts in this play are of its first {JUDGED_MAX_S} s"));
             }
         }
         if !self.untouched_layers.is_empty() {

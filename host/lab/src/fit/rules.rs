@@ -106,8 +106,8 @@ pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(
     check_at_voltage(strokes.iter().filter(is_near).count(), voltage_v_rms)
 }
 
-/// Whether there are voltages to compare: the lowest and the highest of the drive, which are returned, have to be volts,
-/// and far enough apart. `None` if it is never on.
+/// Whether there are voltages to compare: the lowest and the highest of the drive, which are returned, have to be
+/// volts, and far enough apart. `None` if it is never on.
 pub(super) fn check_voltages(range_v_rms: Option<(f64, f64)>) -> Result<(f64, f64), FitError> {
     let Some((low, high)) = range_v_rms else {
         let sentence = "the voltage is zero throughout: record with the drive switched on and off";

@@ -192,8 +192,7 @@ impl<L: RecordedLink> Play<'_, L> {
             .with_world(self.plan.world)
             .with_simulated(self.outputs.is_simulated())
             .with_stream(stream)
-            .with_refusals(self.refusals)
-            .with_verdicts(recorder.take_judged().map(|samples| in_play(program, &samples)));
+            .with_refusals(self.refusals);
         let rows = recorder.take_rows();
         self.outputs.keep_samples(&recorder.take_samples());
         if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
@@ -201,6 +200,15 @@ impl<L: RecordedLink> Play<'_, L> {
         }
         let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
+        let goes_on = || {
+            if self.interrupt.is_requested() && !is_requested {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let verdicts = recorder.take_judged().and_then(|samples| in_play(program, &samples, &goes_on));
+        let report = report.with_verdicts(verdicts, recorder.t_s());
         let marked = (recorder.markers(), is_requested || ended.is_err());
         let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
