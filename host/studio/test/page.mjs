@@ -138,7 +138,8 @@ function addHelpers() {
     });
 }
 
-const SPEED_MM_PER_S = 80;
+/** Sliding speed of a whole stroke. */
+export const SPEED_MM_PER_S = 80;
 
 /** Slides over the map along x, lifts, and returns the samples of this stroke. */
 export function wholeStroke(page, yMm) {
