@@ -78,7 +78,7 @@ class Scene:
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, files: Mapping[str, bytes] | None = None) -> Scene:
-        """Make a scene from the tables of its file; `version` is 2 unless it is given.
+        """Make a scene from the tables of its file; `version` is 1 unless it is given.
 
         Raises
         ------
