@@ -336,7 +336,7 @@ const SWITCHING_TICKS: u32 = 42;
 /// Ticks with a wrong monitor voltage after which the board faults.
 const WRONG_TICKS: u32 = 16;
 
-/// What the monitor takes for zero, and when, `frixel-control` tests (`monitor`).
+/// `frixel-control` tests what the monitor takes for zero, and when (`monitor`).
 #[test]
 fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     for command in [Command::Stop, Command::Disarm] {

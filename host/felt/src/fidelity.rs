@@ -54,6 +54,11 @@ const SETTLING: usize = 80;
 /// Outputs that are off, whatever the scene says.
 const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Flags::HOST_SILENT];
 
+/// Ticks from one sample to the next, on a board of `tick_hz` ticks a second.
+pub fn ticks_per_sample(tick_hz: u32) -> u32 {
+    (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32
+}
+
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FidelitySample {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, to_the_end};
-use frixel_felt::fidelity::{FidelitySample, SAMPLE_HZ};
+use frixel_felt::fidelity::{FidelitySample, ticks_per_sample};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
 use frixel_model::FrictionLaw;
@@ -76,7 +76,7 @@ impl Simulation {
     /// [`FidelitySample`].
     pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64, own_finger: Option<FrictionLaw>) -> Self {
         let seconds = stroke.duration_s();
-        let ticks_per_row = (f64::from(rig.board.tick_hz) / SAMPLE_HZ).round().max(1.0) as u32;
+        let ticks_per_row = ticks_per_sample(rig.board.tick_hz);
         Self { rig, stroke, seconds, seed, ticks_per_row, own_finger, through_finger: true }
     }
 

@@ -200,9 +200,9 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
 }
 
 /// Judges the elements of a program by what was felt in one play that nothing changed, whatever its finger, load and
-/// touch source. An element is left out if the finger never slid on it while the board drove the scene, and if its
-/// friction depends on the speed: it is judged by plays of several. `goes_on` is asked before each element; when it
-/// breaks, there is no judgement.
+/// touch source. An element is left out if the finger never slid on it while the board drove the scene. So is one whose
+/// friction depends on the speed, since one play has no second speed to compare with. `goes_on` is asked before each
+/// element; when it breaks, there is no judgement.
 pub fn in_play(
     program: &Program,
     samples: &[FidelitySample],

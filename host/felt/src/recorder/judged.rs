@@ -1,8 +1,10 @@
-//! What the judge takes of a play.
+//! The samples of a play, for the judge.
+
+use frixel_wire::fault::Flags;
 
 use super::rows::{Frictions, RowMaker};
 use super::{FeltRow, Observation};
-use crate::fidelity::{FidelitySample, SAMPLE_HZ};
+use crate::fidelity::{FidelitySample, SAMPLE_HZ, ticks_per_sample};
 
 /// The longest stretch of a play that is judged, s: its samples take 17 MB.
 pub const JUDGED_MAX_S: f64 = 60.0;
@@ -11,15 +13,14 @@ pub const JUDGED_MAX_S: f64 = 60.0;
 #[derive(Debug)]
 pub(super) struct JudgedSamples {
     row_maker: RowMaker,
-    /// The last row in which the board reported its flags: it may report them less often.
-    reported: FeltRow,
+    /// The flags that the board reported last, which may be less often.
+    flags: Option<Flags>,
     samples: Vec<FidelitySample>,
 }
 
 impl JudgedSamples {
     pub(super) fn new(tick_hz: u32) -> Self {
-        let ticks_per_row = (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32;
-        Self { row_maker: RowMaker::new(tick_hz, ticks_per_row), reported: FeltRow::default(), samples: Vec::new() }
+        Self { row_maker: RowMaker::new(tick_hz, ticks_per_sample(tick_hz)), flags: None, samples: Vec::new() }
     }
 
     /// Adds an observation `ticks` ticks after time zero, which is `start_s` after the power-on of the board.
@@ -28,10 +29,8 @@ impl JudgedSamples {
             return;
         }
         let Some(row) = self.row_maker.add(observation, ticks, frictions) else { return };
-        if row.flags.is_some() {
-            self.reported = row;
-        }
-        self.samples.push(FidelitySample::of_row(&FeltRow { flags: self.reported.flags, ..row }, start_s));
+        self.flags = row.flags.or(self.flags);
+        self.samples.push(FidelitySample::of_row(&FeltRow { flags: self.flags, ..row }, start_s));
     }
 
     pub(super) fn into_samples(self) -> Vec<FidelitySample> {
