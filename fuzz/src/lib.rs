@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink, Upload, to_the_end};
+use frixel_driver::{Device, DeviceError, PollingLink, Upload, ignore_progress};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::board_costs;
@@ -168,7 +168,7 @@ pub fn scene_load(bytes: &[u8]) -> bool {
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
     let mut device = Device::connect(PollingLink::new(RigStream::new(rig))).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
-    let taken = device.upload(&upload, &mut to_the_end).and_then(|()| device.commit(upload.scene_crc32()));
+    let taken = device.upload(&upload, &mut ignore_progress).and_then(|()| device.commit(upload.scene_crc32()));
     match taken {
         Ok(()) => {
             let scene = WireScene::parse(bytes).expect("the board has read it");

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use frixel_control::Drive;
-use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
+use frixel_hil_sim::{Point, Stroke, World, WorldConfig, WorldOptions};
 use frixel_wire::dac_code::DacCode;
 
 const SECONDS: f64 = 60.0;
@@ -24,7 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("rows, 1 kHz", Stroke::through(&rows(SECONDS))?),
     ];
     for (name, stroke) in strokes {
-        for (world, config) in [("ideal", WorldConfig::IDEAL), ("realistic", WorldConfig::IDEAL.realistic())] {
+        for (world, config) in
+            [("ideal", WorldConfig::IDEAL), ("realistic", WorldConfig::IDEAL.with(&WorldOptions::default()))]
+        {
             measure(&format!("{world}, {name}"), World::new(config, stroke.clone(), 1)?);
         }
     }

@@ -53,4 +53,4 @@ pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig};
 pub use stroke::{FingerState, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow};
 pub use touch::TouchConfig;
-pub use world::{Felt, ReferenceFriction, World, WorldConfig, WorldFault};
+pub use world::{Felt, OwnFinger, ReferenceFriction, World, WorldConfig, WorldFault, WorldOptions};

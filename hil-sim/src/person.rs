@@ -4,6 +4,7 @@ use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
 
 use crate::fingertip::FingertipConfig;
 use crate::random::{Purpose, Random};
+use crate::world::OwnFinger;
 
 /// Largest distance of a person from the middle of the population, in standard deviations.
 const DRAW_LIMIT: f64 = 2.5;
@@ -70,6 +71,11 @@ impl Person {
     /// The contact of this finger with a screen whose coating has an effective gap (thickness over permittivity), in m.
     pub fn contact(&self, coating_gap_m: f64) -> Result<LoadedContact<f64>, ParameterError> {
         Contact::new(&self.finger, self.skin_gap_m + coating_gap_m)?.under_load(self.normal_load_n)
+    }
+
+    /// The person's finger on such a screen, for [`WorldOptions`](crate::WorldOptions).
+    pub fn own_finger(&self, coating_gap_m: f64) -> Result<OwnFinger, ParameterError> {
+        Ok(OwnFinger { law: self.contact(coating_gap_m)?.into(), fingertip: self.fingertip })
     }
 }
 

@@ -6,11 +6,11 @@ use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
 use frixel_session::{Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 use frixel_wire::fault::Fault;
-use frixel_wire::hello::notice;
+use frixel_wire::hello::{BoardLimits, notice};
 use frixel_wire::message::Refusal;
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Journal, Line, Stroke, World, WorldConfig, WorldError};
+use crate::{AmplifierConfig, Journal, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
 /// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
@@ -71,6 +71,19 @@ impl RigConfig {
     /// A rig of a board in [the world that the board expects](WorldConfig::of).
     pub fn of(board: Board) -> Self {
         Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
+    }
+
+    /// This rig in the world of `options`. Its own world has to be an ideal one.
+    #[must_use]
+    pub fn with(self, options: &WorldOptions) -> Self {
+        Self { world: self.world.with(options), ..self }
+    }
+
+    /// This rig with a board that plays drafts: a tick may take longer than the real board has time for.
+    #[must_use]
+    pub fn for_drafts(self) -> Self {
+        let limits = BoardLimits { tick_cycles_max: u32::MAX, ..self.board.limits };
+        Self { board: Board { limits, ..self.board }, ..self }
     }
 }
 
@@ -245,14 +258,14 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// Sets the world's finger to the scene's, unless a scenario has set another.
+    /// Loads the scene's finger into the world.
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
         let Some(header) = self.scene else { return };
         // The knots of an empirical law depend on the voltage that the board can give.
         let Ok(voltage_max_v_rms) = voltage_max_v_rms(&header, &self.board) else { return };
         if let Ok(law) = (Header { voltage_max_v_rms, ..header }).friction_law() {
-            self.world.set_scenes_finger(law);
+            self.world.set_finger(law);
         }
     }
 

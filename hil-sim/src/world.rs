@@ -1,6 +1,7 @@
 //! The simulated world: everything outside the board's pins.
 
 mod faults;
+mod options;
 
 use core::ops::Range;
 
@@ -16,6 +17,7 @@ use crate::touch::{TouchConfig, TouchSource};
 use faults::FaultSchedule;
 
 pub use faults::WorldFault;
+pub use options::{OwnFinger, WorldOptions};
 
 /// Configuration of a [`World`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +32,8 @@ pub struct WorldConfig {
     pub fingertip: FingertipConfig,
     /// The touch source.
     pub touch: TouchConfig,
+    /// Steady friction of the finger, whatever scene plays. `None`: that of the finger for which the scene is made.
+    pub own_finger: Option<FrictionLaw>,
 }
 
 impl WorldConfig {
@@ -41,6 +45,7 @@ impl WorldConfig {
         amplifier: AmplifierConfig::IDEAL,
         fingertip: FingertipConfig::IDEAL,
         touch: TouchConfig::IDEAL,
+        own_finger: None,
     };
 
     /// The ideal plant around a board, with the lags that the board expects.
@@ -50,23 +55,6 @@ impl WorldConfig {
             full_scale_v_peak: board.limits.full_scale_v_peak.into(),
             amplifier: AmplifierConfig::of(board),
             ..Self::IDEAL
-        }
-    }
-
-    /// This world with every effect that was measured on real amplifiers, fingers and touch sources. The amplifier's
-    /// and the electrode's lag stay.
-    #[must_use]
-    pub fn realistic(self) -> Self {
-        let AmplifierConfig { output_time_constant_s, electrode_time_constant_s, .. } = self.amplifier;
-        Self {
-            amplifier: AmplifierConfig {
-                output_time_constant_s,
-                electrode_time_constant_s,
-                ..AmplifierConfig::REALISTIC
-            },
-            fingertip: FingertipConfig::REALISTIC,
-            touch: TouchConfig::REALISTIC,
-            ..self
         }
     }
 }
@@ -153,7 +141,7 @@ pub struct World {
     healthy_amplifier: AmplifierConfig,
     faults: FaultSchedule,
     fingertip: Fingertip,
-    /// Whether the finger is that of a scenario, and stays when a scene with another profile is loaded.
+    /// Whether the finger stays when a scene with another profile is loaded.
     owns_finger: bool,
     touch_source: TouchSource,
     /// The report that arrived at the current tick.
@@ -176,12 +164,17 @@ enum Motion {
 impl World {
     /// A world at rest at tick 0, with the finger lifted. All random numbers are drawn from `seed`.
     pub fn new(config: WorldConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
-        let WorldConfig { tick_hz, full_scale_v_peak, amplifier, fingertip, touch } = config;
+        let WorldConfig { tick_hz, full_scale_v_peak, amplifier, fingertip, touch, own_finger } = config;
         if tick_hz == 0 {
             return Err(OutOfRange { name: "tick_hz", expected: "above 0", found: 0.0 }.into());
         }
         let mut touch_source = TouchSource::new(&touch, tick_hz, seed)?;
         touch_source.tick(0, None);
+        let example: FrictionLaw = example_finger().map_err(WorldError::Finger)?.into();
+        let mut fingertip = Fingertip::new(fingertip, example, tick_hz, seed)?;
+        if let Some(law) = own_finger {
+            fingertip.set_law(law);
+        }
         Ok(Self {
             tick_hz,
             tick: 0,
@@ -190,8 +183,8 @@ impl World {
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
             healthy_amplifier: amplifier,
             faults: FaultSchedule::default(),
-            fingertip: Fingertip::new(fingertip, example_finger().map_err(WorldError::Finger)?.into(), tick_hz, seed)?,
-            owns_finger: false,
+            fingertip,
+            owns_finger: own_finger.is_some(),
             touch_source,
             touch: None,
             stroke,
@@ -199,18 +192,13 @@ impl World {
         })
     }
 
-    /// Replaces the finger from now on by that of a profile under its load.
+    /// Loads the finger of a scene's profile under its load. A [finger of the world's own](OwnFinger) stays.
     pub fn set_finger(&mut self, law: impl Into<FrictionLaw>) {
         let law = law.into();
-        self.fingertip.set_law(law);
         self.fingertip.set_scene_load(&law);
-    }
-
-    /// Replaces the finger from now on by one of its own, whatever profile a scene is meant for. The board does not
-    /// know this finger.
-    pub fn set_own_finger(&mut self, law: impl Into<FrictionLaw>) {
-        self.owns_finger = true;
-        self.fingertip.set_law(law.into());
+        if !self.owns_finger {
+            self.fingertip.set_law(law);
+        }
     }
 
     /// Replaces the touch source from now on. Reports that are under way are lost, and the new source reports the
@@ -228,14 +216,6 @@ impl World {
     /// Steady friction of the finger on the screen.
     pub fn finger_law(&self) -> &FrictionLaw {
         self.fingertip.law()
-    }
-
-    /// Replaces the finger by that of the scene's profile, unless this world has a finger of its own.
-    pub(crate) fn set_scenes_finger(&mut self, law: FrictionLaw) {
-        self.fingertip.set_scene_load(&law);
-        if !self.owns_finger {
-            self.fingertip.set_law(law);
-        }
     }
 
     /// Starts or restarts the stroke: its time zero is the current tick.

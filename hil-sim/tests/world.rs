@@ -4,7 +4,7 @@
 use frixel_control::{Drive, Sense};
 use frixel_hil_sim::{
     AmplifierConfig, Felt, FingerState, FingertipConfig, Person, Point, ReferenceFriction, Stroke, StrokeRow,
-    TouchConfig, World, WorldConfig, WorldFault, example_finger,
+    TouchConfig, World, WorldConfig, WorldFault, WorldOptions, example_finger,
 };
 use frixel_model::{Contact, Finger};
 use frixel_wire::dac_code::DacCode;
@@ -19,8 +19,8 @@ fn sliding() -> Stroke {
     Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap()
 }
 
-fn world(config: WorldConfig) -> World {
-    World::new(config, sliding(), 1).unwrap()
+fn world(config: &WorldConfig) -> World {
+    World::new(*config, sliding(), 1).unwrap()
 }
 
 fn ideal_amplifier() -> WorldConfig {
@@ -36,7 +36,7 @@ fn square(tick: u64, dac_code: i16) -> Drive {
 
 #[test]
 fn without_drive_the_finger_feels_exactly_its_natural_friction() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     world.start_stroke();
     for _ in 0..1000 {
         let felt = world.apply(Drive { amplifier_enable: true, ..Drive::default() });
@@ -48,7 +48,7 @@ fn without_drive_the_finger_feels_exactly_its_natural_friction() {
 #[test]
 fn a_finger_that_is_placed_at_every_tick_is_the_finger_of_the_stroke() {
     let stroke = sliding();
-    let mut by_stroke = world(WorldConfig::default());
+    let mut by_stroke = world(&WorldConfig::default());
     let mut placed = by_stroke.clone();
     by_stroke.start_stroke();
     // Beyond the end of the stroke, where the finger is lifted.
@@ -66,7 +66,7 @@ fn a_finger_that_is_placed_at_every_tick_is_the_finger_of_the_stroke() {
 
 #[test]
 fn a_finger_stays_where_it_was_placed_until_it_is_lifted_or_a_stroke_starts() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     let finger = FingerState { x_m: 0.04, y_m: 0.05, speed_m_per_s: 0.0 };
     world.place_finger(finger);
     let drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: true };
@@ -87,7 +87,7 @@ fn a_square_drive_without_lag_is_felt_as_the_model_says() {
     let contacts = [example_finger().unwrap(), another];
     for (contact, dac_code) in contacts.iter().flat_map(|contact| [1, 3000, 16_384, 32_767].map(|code| (contact, code)))
     {
-        let mut world = world(ideal_amplifier());
+        let mut world = world(&ideal_amplifier());
         world.set_finger(*contact);
         world.start_stroke();
         let felt = (0..4000).map(|tick| world.apply(square(tick, dac_code))).last().unwrap();
@@ -101,7 +101,7 @@ fn a_square_drive_without_lag_is_felt_as_the_model_says() {
 
 #[test]
 fn the_finger_is_up_until_the_stroke_starts_and_after_its_end() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     for tick in 0..100 {
         let felt = world.apply(square(tick, 32_767));
         assert_eq!((felt.finger, felt.friction_n, felt.electric_friction_n), (None, 0.0, 0.0));
@@ -122,7 +122,7 @@ fn the_finger_is_up_until_the_stroke_starts_and_after_its_end() {
 
 #[test]
 fn a_stroke_can_be_started_again() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     world.start_stroke();
     for tick in 0..4000 {
         world.apply(square(tick, 0));
@@ -134,7 +134,7 @@ fn a_stroke_can_be_started_again() {
 
 #[test]
 fn the_monitor_shows_the_output_of_the_tick_before_the_last_and_the_switch_is_held() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     let mut before_v = 0.0;
     for tick in 0..100 {
         let drive = square(tick, 32_767);
@@ -150,7 +150,7 @@ fn the_monitor_shows_the_output_of_the_tick_before_the_last_and_the_switch_is_he
 
 #[test]
 fn the_amplifier_s_fault_line_follows_its_schedule() {
-    let mut world = world(WorldConfig::default());
+    let mut world = world(&WorldConfig::default());
     world.schedule_fault(10..12, WorldFault::AmplifierNotReady).unwrap();
     world.schedule_fault(20..21, WorldFault::AmplifierNotReady).unwrap();
     let faulty: Vec<u64> = (0..100)
@@ -187,7 +187,7 @@ proptest! {
 
 /// A world with every effect, whose finger slides over a square drive.
 fn realistic_run(seed: u64, ticks: u64) -> Vec<Felt> {
-    let mut world = World::new(WorldConfig::default().realistic(), sliding(), seed).unwrap();
+    let mut world = World::new(WorldConfig::IDEAL.with(&WorldOptions::default()), sliding(), seed).unwrap();
     world.start_stroke();
     (0..ticks).map(|tick| world.apply(square(tick, 20_000))).collect()
 }
@@ -206,7 +206,7 @@ type SwitchOff = fn(&mut WorldConfig, &WorldConfig);
 
 #[test]
 fn every_effect_of_the_realistic_world_changes_what_is_felt_and_can_be_switched_off() {
-    let realistic = WorldConfig::default().realistic();
+    let realistic = WorldConfig::IDEAL.with(&WorldOptions::default());
     let ideal = WorldConfig::default();
     let run = |config: WorldConfig| {
         let mut world = World::new(config, sliding(), 1).unwrap();
@@ -286,8 +286,8 @@ fn a_stroke_says_with_which_force_the_finger_presses() {
 fn a_scenarios_own_finger_stays_and_the_scenes_does_not() {
     let person = Person::drawn(5);
     let contact = person.contact(1e-6 / 3.9).unwrap();
-    let mut world = world(ideal_amplifier());
-    world.set_own_finger(contact);
+    let mut world = world(&WorldConfig { own_finger: Some(contact.into()), ..ideal_amplifier() });
+    world.set_finger(example_finger().unwrap());
     world.start_stroke();
     let felt = (0..4000).map(|tick| world.apply(square(tick, 20_000))).last().unwrap();
     assert!((felt.natural_friction_n - contact.natural_friction_n()).abs() < 1e-12);

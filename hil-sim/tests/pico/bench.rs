@@ -6,7 +6,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use frixel_control::Board;
-use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink, to_the_end};
+use frixel_driver::{ByteStream, Device, LinkClosed, PollingLink, ignore_progress};
 use frixel_hil_sim::emulated::{Image, PicoRig, Stamped};
 use frixel_hil_sim::{Point, RigTick, Stroke, World, WorldConfig};
 use frixel_scene::{Program, Scene, compile};
@@ -148,7 +148,7 @@ impl Bench {
 
     /// Plays a program under the sliding finger, and waits until the board drives.
     pub(super) fn start_program(&self, host: &mut Host, program: &Program) {
-        frixel_play::start(host, program, &mut to_the_end).unwrap();
+        frixel_play::start(host, program, &mut ignore_progress).unwrap();
         self.with(|rig| rig.world_mut().start_stroke());
         host.wait(Duration::from_millis(60), &mut |_| ()).unwrap();
         assert_eq!(self.with(|rig| rig.zero_since()), None, "the board drives");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{DeviceError, to_the_end};
+use frixel_driver::{DeviceError, ignore_progress};
 use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
@@ -26,7 +26,7 @@ fn zero_within(reading_ticks: u32) -> Duration {
 }
 
 fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
-    frixel_play::start(host, &program(CONSTANT), &mut to_the_end)
+    frixel_play::start(host, &program(CONSTANT), &mut ignore_progress)
 }
 
 /// Plays, breaks something, and expects that the board stops with a fault at the last of so many ticks that read it.

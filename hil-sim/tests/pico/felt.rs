@@ -3,11 +3,11 @@
 use std::slice;
 use std::time::Duration;
 
-use frixel_driver::to_the_end;
+use frixel_driver::ignore_progress;
 use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal, SAMPLE_HZ};
 use frixel_felt::recorder::{FeltRow, Observation, Recorder};
 use frixel_hil_sim::emulated::Image;
-use frixel_hil_sim::{Felt, HUMAN_TEST_SEEDS, RigConfig, Stroke, TouchConfig, WorldConfig};
+use frixel_hil_sim::{Felt, HUMAN_TEST_SEEDS, RigConfig, Stroke, TouchConfig, WorldConfig, WorldOptions};
 use frixel_wire::message::Command;
 
 use super::bench::{BOARD, Bench, GRATING, program};
@@ -27,7 +27,8 @@ const SPEED_M_PER_S: f64 = 0.05;
 
 /// Every effect of the plant, and the touch source that a grating of 10 mm is made for.
 fn world() -> WorldConfig {
-    WorldConfig { touch: TouchConfig::bundled("100").unwrap(), ..WorldConfig::of(&BOARD).realistic() }
+    let options = WorldOptions { touch: TouchConfig::bundled("100"), ..WorldOptions::default() };
+    WorldConfig::of(&BOARD).with(&options)
 }
 
 fn stroke(seconds: f64, seed: u64) -> Stroke {
@@ -57,7 +58,7 @@ fn fidelity(ticks: impl IntoIterator<Item = (Felt, i16)>) -> Fidelity {
 fn on_the_pico(image: &Image, seconds: f64, seed: u64) -> (Fidelity, u64) {
     let bench = Bench::in_world_with_frame(image, &world(), stroke(seconds, seed), seed);
     let mut host = bench.connect();
-    frixel_play::start(&mut host, &program(GRATING), &mut to_the_end).unwrap();
+    frixel_play::start(&mut host, &program(GRATING), &mut ignore_progress).unwrap();
     bench.take_records();
     let start_tick = bench.with(|rig| {
         rig.world_mut().start_stroke();

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::to_the_end;
+use frixel_driver::ignore_progress;
 use frixel_hil_sim::chips::{HeldBus, Transfer};
 use frixel_hil_sim::emulated::{Image, TouchFrame, WireEvent};
 use frixel_hil_sim::{Point, Stroke, WorldConfig};
@@ -40,7 +40,7 @@ fn playing(image: &Image) -> (Bench, Host) {
     let bench = Bench::in_world_with_frame(image, &WorldConfig::of(&BOARD), stroke, 1);
     bench.with(|rig| assert!(rig.watch_orders().unwrap(), "the image names what takes orders"));
     let mut host = bench.connect();
-    frixel_play::start(&mut host, &program(CONSTANT), &mut to_the_end).unwrap();
+    frixel_play::start(&mut host, &program(CONSTANT), &mut ignore_progress).unwrap();
     bench.with(|rig| rig.world_mut().start_stroke());
     comes_back(&bench, &mut host);
     (bench, host)
@@ -119,7 +119,7 @@ fn a_board_without_its_frame_is_there_and_drives_nothing() {
     frame(&bench, |frame| frame.module().connect(false));
     bench.pass(Duration::from_millis(60));
     let mut host = bench.connect();
-    frixel_play::start(&mut host, &program(CONSTANT), &mut to_the_end).unwrap();
+    frixel_play::start(&mut host, &program(CONSTANT), &mut ignore_progress).unwrap();
     bench.with(|rig| rig.world_mut().start_stroke());
     host.wait(BROKEN_FOR, &mut |_| ()).unwrap();
     assert_eq!(bench.with(|rig| rig.zero_since()), Some(Duration::ZERO));

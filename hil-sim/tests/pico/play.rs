@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_control::Drive;
-use frixel_driver::{DeviceError, to_the_end};
+use frixel_driver::{DeviceError, ignore_progress};
 use frixel_hil_sim::emulated::{Stamped, StartCause, WireEvent};
 use frixel_layers::Header;
 use frixel_scene::Program;
@@ -62,7 +62,7 @@ fn a_board_that_was_never_brought_up_drives_ten_volts_at_most() {
     assert_eq!(limits, BoardLimits { voltage_max_v_peak: 10.0, ..BOARD.limits });
     let within = program_for(CONSTANT, &limits);
     let above = Program { header: Header { voltage_max_v_peak: 10.5, ..within.header }, ..within.clone() };
-    let refused = frixel_play::start(&mut host, &above, &mut to_the_end).unwrap_err();
+    let refused = frixel_play::start(&mut host, &above, &mut ignore_progress).unwrap_err();
     let DeviceError::Refused { refusal: Refusal::Config(refusal), .. } = refused else { panic!("{refused:?}") };
     assert_eq!((refusal.field, refusal.max), (ConfigField::VoltagePeak, 10.0), "{refusal}");
     let records = bench.take_records();

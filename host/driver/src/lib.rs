@@ -66,4 +66,4 @@ pub use link::{Link, Written};
 #[cfg(feature = "native")]
 pub use native::{DEFAULT_BAUD, PortError, PortInfo, SerialLink, UsbDevice, ports};
 pub use polling::{ByteStream, PollingLink};
-pub use upload::{Bitmap, Progress, Upload, to_the_end};
+pub use upload::{Bitmap, Progress, Upload, ignore_progress};

@@ -69,8 +69,8 @@ pub struct Progress {
     pub total_bytes: usize,
 }
 
-/// Lets an upload go on to its end.
-pub fn to_the_end(_: Progress) -> ControlFlow<()> {
+/// Ignores the progress of an upload, which goes on to its end.
+pub fn ignore_progress(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 

@@ -9,10 +9,12 @@
 //! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
 //! - [`metrics`]: the size of the errors.
 //! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
+//! - [`GoesOn`]: how long work is interrupted, here and in the crates above.
 #![forbid(unsafe_code)]
 
 pub mod check;
 pub mod fidelity;
+mod goes_on;
 pub mod judge;
 pub mod metrics;
 mod percentile;
@@ -22,5 +24,6 @@ mod spectrum;
 #[cfg(test)]
 mod tests;
 
+pub use goes_on::{GoesOn, TO_THE_END};
 pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
 pub use spectrum::band_rms;

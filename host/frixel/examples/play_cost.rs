@@ -29,9 +29,9 @@ mod stages {
     use std::time::Duration;
 
     use frixel_control::Drive;
-    use frixel_driver::{Device, PollingLink, to_the_end};
-    use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World};
-    use frixel_lab::default_stroke::default_stroke;
+    use frixel_driver::{Device, PollingLink, ignore_progress};
+    use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World, WorldOptions};
+    use frixel_lab::simulate::default_stroke;
     use frixel_play::Player;
     use frixel_play::{RigStream, Simulation, TO_THE_END, simulate};
     use frixel_scene::{Program, compile};
@@ -107,8 +107,7 @@ mod stages {
 
     impl Case {
         fn new(scene: String, seconds: f64) -> Outcome<Self> {
-            let mut rig = RigConfig::default();
-            rig.world = rig.world.realistic();
+            let rig = RigConfig::default().with(&WorldOptions::default());
             let read = frixel::scene_file::load(Path::new(&scene))?;
             let program = compile(&read, &rig.board.limits, rig.board.tick_hz)?;
             let stroke = default_stroke(&program, Some(seconds))?;
@@ -137,7 +136,7 @@ mod stages {
             let rig = Rig::new(&mut memory, &self.rig, self.stroke.clone(), SEED)?;
             let link = PollingLink::new(RigStream::new(rig));
             let mut player = Player::new(Device::connect(link)?);
-            player.start(self.program.clone(), 0, &mut to_the_end)?;
+            player.start(self.program.clone(), 0, &mut ignore_progress)?;
             player.wait(Duration::from_secs_f64(self.seconds))?;
             player.stop()?;
             Ok(())
@@ -146,8 +145,7 @@ mod stages {
         fn recorded(&self) -> Outcome<()> {
             let ticks_per_row = self.rig.board.tick_hz / 1000;
             let (rig, stroke, seconds) = (self.rig, self.stroke.clone(), self.seconds);
-            let simulation =
-                Simulation { rig, stroke, seconds, seed: SEED, ticks_per_row, own_finger: None, through_finger: true };
+            let simulation = Simulation { rig, stroke, seconds, seed: SEED, ticks_per_row, through_finger: true };
             black_box(simulate(&self.program, &simulation, None, TO_THE_END)?);
             Ok(())
         }

@@ -19,7 +19,7 @@ fn checked(path: &Path) -> Vec<LayerVerdict> {
     let rig = RigConfig::default();
     let program = compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz).unwrap();
     let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-    judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap().layers
+    judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers
 }
 
 /// The score of the scene's own finger has the verdicts of the check.

@@ -44,8 +44,7 @@ fn minimum_jerk() -> Stroke {
 
 fn play(program: &Program, rig: &RigConfig, stroke: Stroke, seed: u64) -> Simulated {
     let seconds = stroke.duration_s();
-    let simulation =
-        Simulation { rig: *rig, stroke, seconds, seed, ticks_per_row: 1, own_finger: None, through_finger: false };
+    let simulation = Simulation { rig: *rig, stroke, seconds, seed, ticks_per_row: 1, through_finger: false };
     simulate(program, &simulation, None, TO_THE_END).unwrap()
 }
 

@@ -10,7 +10,7 @@ use std::iter::Take;
 use std::ops::RangeInclusive;
 
 use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal, SAMPLE_HZ};
-use frixel_hil_sim::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, RigConfig, Stroke, TouchConfig};
+use frixel_hil_sim::{Board, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Stroke, TouchConfig, WorldOptions};
 use frixel_lab::score::Trial;
 use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
@@ -51,14 +51,11 @@ const CASES: [(Class, f64, Goal); 9] = [
 ];
 
 /// Every effect of the plant, with the touch source of a class.
-fn rig(class: &Class) -> RigConfig {
-    let mut rig = RigConfig::default();
-    rig.world = rig.world.realistic();
-    rig.world.touch = TouchConfig::bundled(class.source).unwrap();
-    rig
+fn world(class: &Class) -> WorldOptions {
+    WorldOptions { touch: TouchConfig::bundled(class.source), ..WorldOptions::default() }
 }
 
-fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
+fn program(wavelength_mm: f64) -> Program {
     let text = format!(
         "version = 1\n\
          [screen]\nwidth_mm = 120\nheight_mm = 80\n\
@@ -67,27 +64,27 @@ fn program(rig: &RigConfig, wavelength_mm: f64) -> Program {
          [[layer]]\nkind = \"grating\"\nwavelength_mm = {wavelength_mm}\nlow_n = 0.0\nhigh_n = {SWING_N}\n"
     );
     let scene = Scene::parse(&text, "the texture", &BTreeMap::new()).unwrap();
-    compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap()
+    compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap()
 }
 
-fn record(rig: &RigConfig, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
+fn record(world: &WorldOptions, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
     let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None };
-    trial.play(program, rig, TO_THE_END).unwrap()
+    trial.play(program, world, TO_THE_END).unwrap()
 }
 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> FidelityMean {
-    let rig = rig(class);
-    let mut program = program(&rig, class.wavelength_mm);
+    let mut program = program(class.wavelength_mm);
     change(&mut program);
-    FidelityMean::of(&[Fidelity::of(&record(&rig, &program, Stroke::human, speed_mm_s, seed)).unwrap()]).unwrap()
+    FidelityMean::of(&[Fidelity::of(&record(&world(class), &program, Stroke::human, speed_mm_s, seed)).unwrap()])
+        .unwrap()
 }
 
 type Seeds = Take<RangeInclusive<u64>>;
 
-fn mean(rig: &RigConfig, class: &Class, hand: Hand, speed_mm_s: f64, seeds: &Seeds) -> FidelityMean {
-    let program = program(rig, class.wavelength_mm);
-    let play = |seed| Fidelity::of(&record(rig, &program, hand, speed_mm_s, seed)).unwrap();
+fn mean(world: &WorldOptions, class: &Class, hand: Hand, speed_mm_s: f64, seeds: &Seeds) -> FidelityMean {
+    let program = program(class.wavelength_mm);
+    let play = |seed| Fidelity::of(&record(world, &program, hand, speed_mm_s, seed)).unwrap();
     FidelityMean::of(&seeds.clone().map(play).collect::<Vec<_>>()).unwrap()
 }
 
@@ -95,7 +92,7 @@ fn mean(rig: &RigConfig, class: &Class, hand: Hand, speed_mm_s: f64, seeds: &See
 fn missed(hand: Hand, seeds: &Seeds) -> Vec<String> {
     let mut missed = Vec::new();
     for (class, speed_mm_s, goal) in CASES {
-        let found = mean(&rig(&class), &class, hand, speed_mm_s, seeds);
+        let found = mean(&world(&class), &class, hand, speed_mm_s, seeds);
         let line = format!(
             "{} Hz, {} mm at {speed_mm_s} mm/s: error {:.2}, correlation {:.3}, spurious {:.1} mN, {:.1} dB",
             class.source,
@@ -140,7 +137,7 @@ fn tables_of_source_and_feature_size() {
             for wavelength_mm in [2.0, 5.0, 10.0, 20.0] {
                 let cells = [50.0, 100.0, 200.0].map(|speed_mm_s| {
                     let class = Class { wavelength_mm, ..class };
-                    let found = mean(&rig(&class), &class, hand, speed_mm_s, &seeds);
+                    let found = mean(&world(&class), &class, hand, speed_mm_s, &seeds);
                     // A mean over seeds is no better than its worst would be good: every number is one.
                     assert!(found.error.is_finite() && found.correlation.abs() <= 1.0, "{found:?}");
                     format!(
@@ -163,9 +160,9 @@ fn tables_of_source_and_feature_size() {
     ];
     for (name, change) in changes {
         let ratios = [SLOW, MEDIUM, FAST].map(|class| {
-            let mut rig = rig(&class);
-            change(&mut rig.world.touch);
-            format!("{:.2}", mean(&rig, &class, Stroke::human, 100.0, &seeds).error)
+            let mut world = world(&class);
+            change(world.touch.as_mut().unwrap());
+            format!("{:.2}", mean(&world, &class, Stroke::human, 100.0, &seeds).error)
         });
         println!("| {name} | {} |", ratios.join(" | "));
     }
@@ -207,12 +204,12 @@ fn phases_of_the_error() {
     for (name, hand) in HANDS {
         println!("{name}: error; share of its energy / of the time: {:?}", Phase::ALL);
         for (class, speed_mm_s, _) in CASES {
-            let rig = rig(&class);
-            let program = program(&rig, class.wavelength_mm);
+            let world = world(&class);
+            let program = program(class.wavelength_mm);
             let mut energy = [(0.0, 0_u32); Phase::ALL.len()];
             let mut plays = Vec::new();
             for seed in HUMAN_TUNING_SEEDS.take(6) {
-                let record = record(&rig, &program, hand, speed_mm_s, seed);
+                let record = record(&world, &program, hand, speed_mm_s, seed);
                 plays.push(Fidelity::of(&record).unwrap());
                 for touch in record.split(|sample| sample.speed_m_per_s.is_none()) {
                     for (index, sample) in touch.iter().enumerate() {

@@ -12,7 +12,7 @@ use frixel_felt::Preview;
 use frixel_felt::judge::{weber_steps, weber_steps_safe};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
-use frixel_lab::default_stroke::default_stroke;
+use frixel_lab::simulate::default_stroke;
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::reference::{Context, Reference, direction_of};
@@ -76,15 +76,8 @@ impl Entry {
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
         let stroke = default_stroke(&program, None).unwrap();
-        let simulation = Simulation {
-            rig,
-            seconds: stroke.duration_s(),
-            stroke,
-            seed: 1,
-            ticks_per_row: 40,
-            own_finger: None,
-            through_finger: false,
-        };
+        let simulation =
+            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40, through_finger: false };
         let simulated =
             simulate(&program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{}: {error}", self.name));
         let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
@@ -137,15 +130,8 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
         let rig = RigConfig::default();
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::sweep(width_m, height_m, 2.0).unwrap();
-        let simulation = Simulation {
-            rig,
-            seconds: stroke.duration_s(),
-            stroke,
-            seed: 1,
-            ticks_per_row: 40,
-            own_finger: None,
-            through_finger: false,
-        };
+        let simulation =
+            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40, through_finger: false };
         let simulated =
             simulate(program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{name}: {error}"));
         let rows = simulated.recorder.rows();
@@ -191,15 +177,8 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
         cut += 1;
         let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
         let stroke = Stroke::sweep(width_m, height_m, 1.0).unwrap();
-        let simulation = Simulation {
-            rig,
-            seconds: stroke.duration_s(),
-            stroke,
-            seed: 1,
-            ticks_per_row: 10,
-            own_finger: None,
-            through_finger: false,
-        };
+        let simulation =
+            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10, through_finger: false };
         let whole = Program { header: Header { electric_friction_max_n: None, ..program.header }, ..program.clone() };
         let [with_cut, without] = [program, &whole].map(|program| {
             let simulated =

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use frixel::scene_file;
-use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink, to_the_end};
+use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink, ignore_progress};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_play::RigStream;
 use frixel_scene::{Program, compile};
@@ -83,7 +83,7 @@ impl Mortal<'_> {
 fn play(line: &Line<'_>, program: &Program, bytes_max: usize, time: Duration) -> Result<(), DeviceError> {
     let mortal = Mortal { line: line.clone(), bytes_left: bytes_max };
     let mut client = Device::connect(PollingLink::new(mortal))?;
-    frixel_play::start(&mut client, program, &mut to_the_end)?;
+    frixel_play::start(&mut client, program, &mut ignore_progress)?;
     client.wait(time, &mut |_| ())
 }
 

@@ -191,7 +191,7 @@ fn gallery() -> String {
         let cells = drives.each_ref().map(|drive| {
             let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
             let program = draft(&scene, "example", drive);
-            let judgement = judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap();
+            let judgement = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap();
             let count = |verdict| judgement.layers.iter().filter(|layer| layer.verdict == verdict).count();
             let counts = [
                 (Verdict::Felt, "felt"),

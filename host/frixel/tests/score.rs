@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use frixel::scene_file;
-use frixel_hil_sim::{RigConfig, Stroke};
+use frixel_hil_sim::{RigConfig, Stroke, WorldOptions};
 use frixel_lab::score::{Score, Trial};
 use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
@@ -30,7 +30,8 @@ fn mean(program: &Program, key: &str) -> f64 {
             Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None }
         })
         .collect();
-    let score = Score::of(program, &RigConfig::default(), &trials, TO_THE_END).unwrap();
+    let score =
+        Score::of(program, &WorldOptions { ideal: true, ..WorldOptions::default() }, &trials, TO_THE_END).unwrap();
     score.metrics.iter().find(|metric| metric.key == key).unwrap().mean
 }
 
@@ -52,8 +53,7 @@ fn a_scene_of_nothing_has_no_contrast() {
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
     let trial = Trial { stroke_name: "human 1".to_owned(), stroke: stroke.into(), seed: 1, finger: None };
-    let rig = RigConfig { world: rig.world.realistic(), ..rig };
-    let score = Score::of(&program, &rig, &[trial], TO_THE_END).unwrap();
+    let score = Score::of(&program, &WorldOptions::default(), &[trial], TO_THE_END).unwrap();
     let contrast = score.metrics.iter().find(|metric| metric.key == "contrast_weber_steps").unwrap().mean;
     assert!(contrast.abs() < 0.01, "{contrast} Weber steps");
 }

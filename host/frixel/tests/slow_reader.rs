@@ -4,6 +4,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
@@ -90,7 +91,15 @@ fn with_board(talk: impl FnOnce(&Path) + Send) {
             talk(Path::new(&port));
             ended.store(true, Ordering::Release);
         });
-        server.run(&mut rig, &|| ended.load(Ordering::Acquire) || client.is_finished()).unwrap();
+        server
+            .run(&mut rig, &|| {
+                if ended.load(Ordering::Acquire) || client.is_finished() {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            })
+            .unwrap();
     });
 }
 

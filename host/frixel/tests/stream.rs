@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use frixel::scene_file;
 use frixel::stream;
-use frixel_driver::{Device, PollingLink, StreamStatus, to_the_end};
+use frixel_driver::{Device, PollingLink, StreamStatus, ignore_progress};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_layers::{Blend, Layer, Record, Region, Stream};
@@ -87,7 +87,7 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let mut stream = RigStream::new(rig);
     *stream.recorder_mut() = recorder;
     let mut device = Device::connect(PollingLink::new(stream)).unwrap();
-    frixel_play::start(&mut device, &program, &mut to_the_end).unwrap();
+    frixel_play::start(&mut device, &program, &mut ignore_progress).unwrap();
     device.wait(Duration::from_millis(100), &mut |_| {}).unwrap();
     let (mut feed, notes) = stream::wav(&wav, config.board.tick_hz).unwrap();
     assert!(notes.is_empty());

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Duration;
 
-use frixel_driver::{Device, PollingLink, to_the_end};
+use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_play::Player;
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut memory = BoardMemory::new();
     let stream = RigStream::new(Rig::new(&mut memory, &rig, stroke, 1)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
-    player.start(program, 0, &mut to_the_end)?;
+    player.start(program, 0, &mut ignore_progress)?;
     player.wait(Duration::from_millis(200))?;
     player.change_layer("button", Some(true), None)?;
     player.wait(Duration::from_millis(200))?;

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::{env, fs};
 
-use frixel_hil_sim::RigConfig;
-use frixel_lab::default_stroke::default_stroke;
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_lab::simulate::default_stroke;
 use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{FileUnavailable, Files, Scene, compile};
 
@@ -41,14 +41,12 @@ fn play() -> Result<(), Box<dyn Error>> {
     let scene = Scene::parse_bytes(&bytes, &path.display().to_string(), &files)?;
 
     // A program is compiled for the limits of one board: here the simulated one, in a world with noise and losses.
-    let mut rig = RigConfig::default();
-    rig.world = rig.world.realistic();
+    let rig = RigConfig::default().with(&WorldOptions::default());
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let stroke = default_stroke(&program, None)?;
     let seconds = stroke.duration_s();
     let ticks_per_row = rig.board.tick_hz / 1000;
-    let simulation =
-        Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, own_finger: None, through_finger: true };
+    let simulation = Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, through_finger: true };
     let played = simulate(&program, &simulation, None, TO_THE_END)?;
 
     let rows = played.recorder.rows();

@@ -48,8 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Ok(count.get() < SAMPLES)
     });
-    let simulation =
-        Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, own_finger: None, through_finger: false };
+    let simulation = Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, through_finger: false };
     let played = simulate(&program, &simulation, Some(feed), TO_THE_END)?;
 
     let status = played.stream.ok_or("nothing was streamed")?;

@@ -36,8 +36,7 @@ fn error_mn(touch: TouchConfig) -> Result<f64, Box<dyn Error>> {
     let scene = Scene::parse(SCENE, "grating.toml", &BTreeMap::<String, Vec<u8>>::new())?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let (stroke, ticks_per_row) = (Stroke::through(&places())?, rig.board.tick_hz / 1000);
-    let simulation =
-        Simulation { rig, stroke, seconds: SECONDS, seed: 1, ticks_per_row, own_finger: None, through_finger: false };
+    let simulation = Simulation { rig, stroke, seconds: SECONDS, seed: 1, ticks_per_row, through_finger: false };
     let error = simulate(&program, &simulation, None, TO_THE_END)?.recorder.summary().friction_error;
     Ok(1e3 * error.ok_or("the finger was never down")?.rms_n)
 }

@@ -2,7 +2,7 @@
 //!
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
-//! - [`default_stroke`]: the stroke of a play that names none.
+//! - [`simulate`]: the board, world, stroke and finger of a play.
 //! - [`board_costs`]: memory, table and line bytes that a board needs for a scene.
 //! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
@@ -18,7 +18,6 @@
 
 mod bootstrap;
 pub mod calibration;
-pub mod default_stroke;
 pub mod fit;
 pub mod hash;
 pub mod input;
@@ -27,6 +26,7 @@ pub mod recording;
 mod rehearsal;
 pub mod scenario;
 pub mod score;
+pub mod simulate;
 mod statistics;
 pub mod stroke_file;
 pub mod sweep;

@@ -1,6 +1,6 @@
 //! Memory, table and line bytes that a simulated board needs for a scene, measured without playing it.
 
-use frixel_driver::{Device, DeviceError, PollingLink, to_the_end};
+use frixel_driver::{Device, DeviceError, PollingLink, ignore_progress};
 use frixel_felt::check::BoardCosts;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
 use frixel_play::{RigStream, load};
@@ -28,6 +28,6 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Reh
     let stroke = Stroke::sweep(header.screen_width_m.into(), header.screen_height_m.into(), 1.0)?;
     let stream = RigStream::new(Rig::new(&mut memory, rig, stroke, 1)?);
     let mut device = Device::connect(PollingLink::new(stream))?;
-    let wire_bytes = load(&mut device, program, &mut to_the_end)?;
+    let wire_bytes = load(&mut device, program, &mut ignore_progress)?;
     Ok(BoardCosts::of(program, rig, wire_bytes))
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use frixel_driver::{
-    Bitmap, ByteStream, Device, LinkClosed, PollingLink, StreamSettings, StreamStatus, Upload, to_the_end,
+    Bitmap, ByteStream, Device, LinkClosed, PollingLink, StreamSettings, StreamStatus, Upload, ignore_progress,
 };
 use frixel_hil_sim::{BoardMemory, LineNoise, NoiseConfig, Rig, RigConfig, Stroke};
 use frixel_scene::{Program, Scene, compile};
@@ -135,7 +135,7 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
     let picture = Bitmap { crc32: bitmap_crc32(width, height, &samples), width, height, samples: &samples };
     let upload = Upload { scene: &scene, bitmaps: vec![picture] };
     let (failed, took_s) = on_line(&mut |device| {
-        let uploaded = device.upload(&upload, &mut to_the_end).and_then(|()| device.commit(upload.scene_crc32()));
+        let uploaded = device.upload(&upload, &mut ignore_progress).and_then(|()| device.commit(upload.scene_crc32()));
         let failed = uploaded.err().map(|error| error.to_string());
         if failed.is_none() {
             assert_eq!(device.link_mut().stream_mut().rig.scene(), Some(&program.header));
@@ -149,7 +149,7 @@ fn measured(bit_error_rate: f64, stream_s: f64) -> Row {
     let alone = Upload { scene: &scene, bitmaps: Vec::new() };
     let (failed, took_s) = on_line(&mut |device| {
         let mut play = || {
-            device.upload(&alone, &mut to_the_end)?;
+            device.upload(&alone, &mut ignore_progress)?;
             device.commit(alone.scene_crc32())?;
             device.arm()?;
             device.play()?;

@@ -1,7 +1,7 @@
 //! Recordings of the simulator's people, with every effect of its plant.
 
 use frixel_control::Drive;
-use frixel_hil_sim::{FingerState, FingertipConfig, Person, Point, Stroke, World, WorldConfig};
+use frixel_hil_sim::{FingerState, FingertipConfig, Person, Point, Stroke, World, WorldConfig, WorldOptions};
 use frixel_lab::fit::Row;
 use frixel_model::{Contact, Finger};
 use frixel_wire::dac_code::DacCode;
@@ -17,7 +17,7 @@ const TICKS_PER_ROW: u32 = 8;
 const FULL_SCALE_V_PEAK: f64 = 200.0;
 
 fn config(fingertip: FingertipConfig) -> WorldConfig {
-    let realistic = WorldConfig::IDEAL.realistic();
+    let realistic = WorldConfig::IDEAL.with(&WorldOptions::default());
     WorldConfig { tick_hz: TICK_HZ, full_scale_v_peak: FULL_SCALE_V_PEAK, fingertip, ..realistic }
 }
 
@@ -30,13 +30,13 @@ fn drive(tick: u32, voltage_v_rms: f64) -> Drive {
 /// A world that nothing moves but the caller.
 fn world(person: &Person, fingertip: FingertipConfig, load_n: f64, seed: u64) -> World {
     let place = Point { x_m: 0.01, y_m: 0.03 };
-    let mut world = World::new(config(fingertip), Stroke::still(place, 1.0).unwrap(), seed).unwrap();
     // The plant's friction coefficient at a load, put into the contact whose own load that is.
     let gain = (load_n / person.normal_load_n).powf(person.fingertip.load_exponent);
     let finger = Finger { friction_coefficient: gain * person.finger.friction_coefficient, ..person.finger };
     let contact = Contact::new(&finger, person.skin_gap_m + COATING_GAP_M).unwrap();
-    world.set_own_finger(contact.under_load(load_n).unwrap());
-    world
+    let own_finger = Some(contact.under_load(load_n).unwrap().into());
+    let config = WorldConfig { own_finger, ..config(fingertip) };
+    World::new(config, Stroke::still(place, 1.0).unwrap(), seed).unwrap()
 }
 
 /// The strokes of a protocol by a person, and the force sensor's rows: means over a millisecond, and 1 mN of noise.

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, Event, Link, Progress, to_the_end};
+use frixel_driver::{Device, DeviceError, Event, Link, Progress, ignore_progress};
 use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
 use frixel_scene::{Clamped, LayerSetting, Program};
@@ -150,7 +150,7 @@ impl<L: Link + Recorded> Player<L> {
     }
 
     fn upload(&mut self, layers: &LiveLayers) -> Result<(), DeviceError> {
-        upload::upload(&mut self.device, layers.program(), layers.settings(), &mut to_the_end)
+        upload::upload(&mut self.device, layers.program(), layers.settings(), &mut ignore_progress)
     }
 
     /// The board has this program from now on.

@@ -1,24 +1,17 @@
 //! Plays compiled scenes on the simulated board, and records the plays.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, to_the_end};
+use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, ignore_progress};
+use frixel_felt::GoesOn;
 use frixel_felt::fidelity::{FidelitySample, ticks_per_sample};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
-use frixel_model::FrictionLaw;
 use frixel_scene::Program;
 use frixel_wire::hello::Hello;
 use thiserror::Error;
 
 use crate::{Feed, PlayError, Player, RigStream};
-
-/// Is asked many times a second of a play, perhaps by several threads at once. When it breaks, the play ends there.
-pub type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
-
-/// Lets every play go on to its end.
-pub const TO_THE_END: GoesOn<'static> = &|| ControlFlow::Continue(());
 
 /// Settings of a play on the simulator.
 #[derive(Clone, Debug)]
@@ -33,8 +26,6 @@ pub struct Simulation {
     pub seed: u64,
     /// Ticks between two rows of the record.
     pub ticks_per_row: u32,
-    /// The finger that slides, in place of the one that the program is compiled for.
-    pub own_finger: Option<FrictionLaw>,
     /// Whether the reference goes through the simulated finger.
     pub through_finger: bool,
 }
@@ -74,19 +65,15 @@ impl From<DeviceError> for SimulationError {
 impl Simulation {
     /// Under one stroke from its beginning to its end, with a reference that goes through the finger, and a row for each
     /// [`FidelitySample`].
-    pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64, own_finger: Option<FrictionLaw>) -> Self {
+    pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64) -> Self {
         let seconds = stroke.duration_s();
         let ticks_per_row = ticks_per_sample(rig.board.tick_hz);
-        Self { rig, stroke, seconds, seed, ticks_per_row, own_finger, through_finger: true }
+        Self { rig, stroke, seconds, seed, ticks_per_row, through_finger: true }
     }
 
     /// The board, switched on, in its world.
     pub fn rig<'a>(&self, memory: &'a mut BoardMemory) -> Result<Rig<'a>, WorldError> {
-        let mut rig = Rig::new(memory, &self.rig, self.stroke.clone(), self.seed)?;
-        if let Some(finger) = self.own_finger {
-            rig.world_mut().set_own_finger(finger);
-        }
-        Ok(rig)
+        Rig::new(memory, &self.rig, self.stroke.clone(), self.seed)
     }
 }
 
@@ -125,7 +112,7 @@ pub fn simulate_by(
     let mut memory = BoardMemory::new();
     let stream = RigStream::new(simulation.rig(&mut memory)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
-    player.start(program.clone(), 0, &mut to_the_end)?;
+    player.start(program.clone(), 0, &mut ignore_progress)?;
     if let Some(feed) = feed {
         player.stream(feed)?;
     }
@@ -168,7 +155,7 @@ mod tests {
         rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
         let mut player = Player::recording(Device::connect(PollingLink::new(RigStream::new(rig))).unwrap(), recorder);
-        player.start(program, 0, &mut to_the_end).unwrap();
+        player.start(program, 0, &mut ignore_progress).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");
         let recorder = player.into_recorder();

@@ -19,7 +19,7 @@ fn program(text: &str) -> Program {
 
 fn judged(layers: &str, advice: Advice) -> Judgement {
     let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-    judge(&program(&format!("version = 1\n{layers}")), &rig, None, advice, TO_THE_END).unwrap()
+    judge(&program(&format!("version = 1\n{layers}")), &rig, advice, TO_THE_END).unwrap()
 }
 
 /// The topmost layer of a scene.
@@ -143,7 +143,7 @@ fn nothing_is_felt_of_a_drive_forced_to_zero() {
         let mut program = program(&format!("version = 1\n{layers}"));
         let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
         program.header.voltage_max_v_rms = 1.0;
-        let found = judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap();
+        let found = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap();
         assert_eq!(found.layers[0].verdict, Verdict::NotFelt, "{layers}{}", feel::sentence(&found.layers[0]));
     }
 }
@@ -192,7 +192,7 @@ fn the_judge_and_common_sense_agree() {
     for path in scenes() {
         let text = fs::read_to_string(&path).unwrap();
         let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-        let checked = judge(&program(&text), &rig, None, Advice::Omitted, TO_THE_END).unwrap();
+        let checked = judge(&program(&text), &rig, Advice::Omitted, TO_THE_END).unwrap();
         let expected: Vec<(&str, &str)> = text
             .lines()
             .filter_map(|line| line.strip_prefix("# ")?.split_once(": "))

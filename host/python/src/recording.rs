@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 use frixel_felt::recorder::Marker;
 use frixel_lab::recording::{
-    Column, Field, Kind, LaterScene, Metadata, PlayOptions, Recording, SourceFile, Values, check_length,
-    play_fields as fields,
+    Column, Field, Kind, LaterScene, Metadata, Recording, SourceFile, Values, check_length, play_fields as fields,
 };
+use frixel_lab::simulate::PlayOptions;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -12,13 +12,14 @@ use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_lab::board_costs;
 use frixel_lab::input::{is_same_name, read_named};
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_play::{judge, judged_rig};
 use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use super::error::{raised, scene_error};
 use super::profile::ProfileText;
+use super::signals::interruptible;
 
 /// Pictures and profiles by the names that a scene has for them.
 pub(crate) type NamedFiles = BTreeMap<String, Vec<u8>>;
@@ -134,13 +135,13 @@ impl Scene {
         let rig = RigConfig::default();
         let program = py.detach(|| compile(&self.parsed, &rig.board.limits, rig.board.tick_hz));
         let program = program.map_err(|error| scene_error(py, &error))?;
-        let json = py.detach(|| {
+        let json = interruptible(py, |goes_on| {
             let costs = board_costs(&program, &rig).map_err(|error| error.to_string())?;
-            let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, TO_THE_END);
+            let judgement = judge(&program, &judged_rig(rig.board, touch), Advice::Sought, goes_on);
             let judgement = judgement.map_err(|error| error.to_string())?;
             let check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
             Ok((if with_board { check.with_board(&program, rig.board.kind) } else { check }).to_json())
-        });
+        })?;
         json.map_err(|error: String| raised(py, "PlayError", (error,)))
     }
 

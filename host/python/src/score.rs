@@ -1,6 +1,6 @@
 //! Scores: how faithfully simulated fingers feel a scene.
 
-use frixel_hil_sim::{RigConfig, TouchConfig, WorldConfig};
+use frixel_hil_sim::{Board, WorldOptions};
 use frixel_lab::score::{Score, TrialPlan, TrialsError, Way};
 use frixel_scene::compile;
 use pyo3::prelude::*;
@@ -36,13 +36,9 @@ pub(crate) struct ScoreSettings<'py> {
 }
 
 impl ScoreSettings<'_> {
-    fn rig(&self, py: Python<'_>) -> PyResult<RigConfig> {
+    fn world(&self, py: Python<'_>) -> PyResult<WorldOptions> {
         let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
-        let mut rig = RigConfig::default();
-        rig.world = if self.ideal { rig.world } else { rig.world.realistic() };
-        let touch = if self.ideal { touch.map(TouchConfig::without_losses) } else { touch };
-        rig.world = WorldConfig { touch: touch.unwrap_or(rig.world.touch), ..rig.world };
-        Ok(rig)
+        Ok(WorldOptions { ideal: self.ideal, touch, ..WorldOptions::default() })
     }
 
     fn way(&self, py: Python<'_>, program: &frixel_scene::Program) -> PyResult<Way> {
@@ -68,8 +64,8 @@ pub(crate) fn score_scene(
     scene: &Scene,
     settings: ScoreSettings<'_>,
 ) -> PyResult<(String, String, String, String)> {
-    let rig = settings.rig(py)?;
-    let program = py.detach(|| compile(scene.parsed(), &rig.board.limits, rig.board.tick_hz));
+    let (world, board) = (settings.world(py)?, Board::SIMULATOR);
+    let program = py.detach(|| compile(scene.parsed(), &board.limits, board.tick_hz));
     let program = program.map_err(|error| scene_error(py, &error))?;
     let plan = TrialPlan {
         way: settings.way(py, &program)?,
@@ -82,8 +78,8 @@ pub(crate) fn score_scene(
     let pool = ThreadPoolBuilder::new().num_threads(settings.jobs).build();
     let pool = pool.map_err(|error| failed(format!("the threads of `jobs` cannot start ({error}): give fewer")))?;
     let scored = interruptible(py, |goes_on| {
-        let trials = plan.of_people(settings.people, scene.parsed(), &program, settings.ideal, goes_on)?;
-        Ok(pool.install(|| Score::of(&program, &rig, &trials, goes_on)))
+        let trials = plan.of_people(settings.people, scene.parsed(), &program, goes_on)?;
+        Ok(pool.install(|| Score::of(&program, &world, &trials, goes_on)))
     })?;
     let scored = scored.map_err(|error| match error {
         TrialsError::Screen(error) => scene_error(py, &error),

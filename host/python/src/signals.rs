@@ -7,6 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use frixel_play::GoesOn;
 use pyo3::prelude::*;
 
 /// Time between two looks at Python's signals.
@@ -21,10 +22,7 @@ pub(crate) fn raised_by_signal() -> Option<PyErr> {
 
 /// Does `work` in another thread, while this one looks at Python's signals. After a signal the function that `work` is
 /// given breaks, and the result is the exception of the signal.
-pub(crate) fn interruptible<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce(&(dyn Fn() -> ControlFlow<()> + Sync)) -> T + Send,
-) -> PyResult<T> {
+pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(GoesOn<'_>) -> T + Send) -> PyResult<T> {
     let is_interrupted = AtomicBool::new(false);
     let goes_on =
         || if is_interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
-use frixel_lab::recording::{
-    Metadata, PlayOptions, PlayOptionsError, SourceFile, StrokeOptions, play_fields, play_values,
-};
+use frixel_lab::recording::{Metadata, SourceFile, play_fields, play_values};
+use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
 use frixel_play::{Simulated, Simulation};
 use frixel_scene::Program;

@@ -1,6 +1,6 @@
 //! What `frixel check` says of a scene.
 
-use frixel_driver::{Device, PollingLink, to_the_end};
+use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::check::{BoardCosts, SceneCheck};
 use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, RigConfig};
@@ -12,7 +12,7 @@ use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
 use crate::layers::layers;
 use crate::pointer_stream::PointerStream;
-use crate::program::{drafted, for_drafts, touch_source};
+use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
@@ -41,14 +41,14 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     let (scene, program) = drafted(request)?;
     let touch = touch_source(request)?;
     let problems = problems_of(&program, &request.entry);
-    let costs = match board_costs(&program, &RigConfig { board: for_drafts(config.board), ..config }) {
+    let costs = match board_costs(&program, &config.for_drafts()) {
         // Not even the simulator plays it.
         Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
         costs => costs?,
     };
     let judgement = if is_judged {
         let rig = judged_rig(config.board, touch);
-        judge(&program, &rig, None, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
+        judge(&program, &rig, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
     } else {
         Judgement::default()
     };
@@ -76,7 +76,7 @@ fn screen(scene: &Scene) -> Value {
 fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
     let mut memory = BoardMemory::new();
     let mut device = Device::connect(PollingLink::new(PointerStream::new(&mut memory, config, 1)?))?;
-    let loaded = load(&mut device, program, &mut to_the_end);
+    let loaded = load(&mut device, program, &mut ignore_progress);
     let wire_bytes = loaded.map_err(|error| HostError::Refused(error.into()))?;
     Ok(BoardCosts::of(program, config, wire_bytes))
 }

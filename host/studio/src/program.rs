@@ -33,11 +33,6 @@ pub(crate) fn drafted(request: &Request) -> Result<(Scene, Program), ProgramErro
     Ok((scene, program))
 }
 
-/// A simulated board that plays drafts: a tick may take longer than a board has time for.
-pub(crate) fn for_drafts(board: Board) -> Board {
-    Board { limits: BoardLimits { tick_cycles_max: u32::MAX, ..board.limits }, ..board }
-}
-
 /// The simulated touch source of a request.
 pub(crate) fn touch_source(request: &Request) -> Result<TouchConfig, ProgramError> {
     let Some(touch) = &request.touch else { return Ok(TouchConfig::REALISTIC) };

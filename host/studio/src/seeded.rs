@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_hil_sim::{BoardMemory, RigConfig, RigTick, Status, WorldConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, RigTick, Status, WorldOptions};
 use frixel_layers::Header;
 
 use crate::host::{connect, load, stream_mut};
@@ -25,9 +25,8 @@ const SAMPLE_MS: u32 = 8;
 ///
 /// The finger moves from the left to the right of the screen and accelerates, and begins again.
 pub fn seeded_hash(request: &Request) -> Result<u64, HostError> {
-    let config = RigConfig::default();
-    let world = WorldConfig { touch: touch_source(request)?, ..config.world.realistic() };
-    let config = RigConfig { world, ..config };
+    let world = WorldOptions { touch: Some(touch_source(request)?), ..WorldOptions::default() };
+    let config = RigConfig::default().with(&world);
     let mut memory = BoardMemory::new();
     let hash = Rc::new(RefCell::new(Hash::new()));
     let observed = Rc::clone(&hash);

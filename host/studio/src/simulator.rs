@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use frixel_driver::DeviceError;
-use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig};
+use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig, WorldOptions};
 use frixel_play::PlayError;
 use frixel_wire::fault::{Fault, State};
 
@@ -12,7 +12,7 @@ use crate::host::{self, Host, stream_mut};
 use crate::host_error::HostError;
 use crate::pointer::{Pointer, PointerSample};
 use crate::pointer_stream::PointerStream;
-use crate::program::{drafted, for_drafts, touch_source};
+use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
 /// Line rate of the simulated port, bits a second: as fast as the rig's line takes bytes. A scene that is replaced is
@@ -37,8 +37,7 @@ impl Simulator {
     ///
     /// The board's memory is never freed: like a real board, an instance of the module has one board.
     pub(crate) fn new(seed: u64) -> Result<Self, HostError> {
-        let config = RigConfig::default();
-        let config = RigConfig { world: config.world.realistic(), board: for_drafts(config.board), baud: BAUD };
+        let config = RigConfig { baud: BAUD, ..RigConfig::default() }.for_drafts().with(&WorldOptions::default());
         let touch = config.world.touch;
         let stream = PointerStream::new(Box::leak(BoardMemory::new()), &config, seed)?;
         Ok(Self { host: host::connect(stream)?, is_wanted: false, touch })

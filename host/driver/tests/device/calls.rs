@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload, to_the_end};
+use frixel_driver::{Device, DeviceError, Event, Link, PollingLink, Upload, ignore_progress};
 use frixel_layers::{Blend, Header, Layer, Record, Region, Stream};
 use frixel_testkit::HEADER;
 use frixel_wire::fault::{Fault, State};
@@ -40,7 +40,7 @@ fn with_features(features: u32) -> Device<VirtualLink> {
 pub(crate) fn commit(device: &mut Device<VirtualLink>, host_timeout_s: f32) {
     let scene = scene(host_timeout_s);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    device.upload(&upload, &mut to_the_end).unwrap();
+    device.upload(&upload, &mut ignore_progress).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
 }
 
@@ -94,7 +94,7 @@ fn a_scene_that_the_firmware_cannot_play_is_refused_before_it_is_uploaded() {
     scene.extend([0; 24]);
     for (features, refused) in [(feature::TELEMETRY, true), (feature::STREAM | feature::POLYGON, false)] {
         let mut device = with_features(features);
-        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut to_the_end).err();
+        let error = device.upload(&Upload { scene: &scene, bitmaps: Vec::new() }, &mut ignore_progress).err();
         let said = error.map(|error| error.to_string());
         assert_eq!(said.is_some(), refused, "{said:?}");
         assert!(said.is_none_or(|said| said.contains("needs stream and polygon") && said.contains("protocol 1.0")));
@@ -130,7 +130,7 @@ fn events_during_a_call_are_delivered_later() {
     let mut device = virtual_board();
     line_of(&mut device).rig.raise(Fault::Deadline, 1);
     let (samples, scene) = (samples(6_250), scene(0.25));
-    device.upload(&Upload { scene: &scene, bitmaps: vec![picture(&samples)] }, &mut to_the_end).unwrap();
+    device.upload(&Upload { scene: &scene, bitmaps: vec![picture(&samples)] }, &mut ignore_progress).unwrap();
     let mut changes = Vec::new();
     device
         .wait(Duration::ZERO, &mut |event| {
@@ -197,9 +197,9 @@ fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     armed.arm().unwrap();
     let mut uploaded = virtual_board();
     uploaded.arm().unwrap();
-    uploaded.upload(&upload, &mut to_the_end).unwrap();
+    uploaded.upload(&upload, &mut ignore_progress).unwrap();
     let mut refused = virtual_board();
-    refused.upload(&upload, &mut to_the_end).unwrap();
+    refused.upload(&upload, &mut ignore_progress).unwrap();
     refused.commit(upload.scene_crc32() + 1).unwrap_err();
     refused.arm().unwrap();
     for device in [&mut armed, &mut uploaded, &mut refused] {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload, to_the_end};
+use frixel_driver::{DEFAULT_BAUD, Device, DeviceError, Link, PortError, SerialLink, Upload, ignore_progress};
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request};
@@ -38,7 +38,7 @@ fn a_scene_plays_over_a_serial_port() {
     let mut device = connect(&board);
     let (samples, scene) = (samples(62_500), scene(0.25));
     let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
-    device.upload(&upload, &mut to_the_end).unwrap();
+    device.upload(&upload, &mut ignore_progress).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     device.arm().unwrap();
     device.play().unwrap();

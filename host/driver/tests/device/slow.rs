@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, Upload, to_the_end};
+use frixel_driver::{Device, DeviceError, Upload, ignore_progress};
 use frixel_wire::message::{Accepted, Refusal};
 
 use crate::calls::{connected, scene, virtual_board};
@@ -25,7 +25,7 @@ fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, [u64; 3], Dur
     let samples = vec![7; 25_000];
     let mut device = slow(time_per_frame);
     let (before, started) = (device.counters(), device.now());
-    let result = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut to_the_end);
+    let result = device.upload(&Upload { scene: &scene(0.25), bitmaps: vec![picture(&samples)] }, &mut ignore_progress);
     let (after, took) = (device.counters(), device.now().saturating_sub(started));
     let frames = after.frames_sent - before.frames_sent;
     println!("{time_per_frame:?} a frame: {frames} frames in {took:?}, {result:?}");
@@ -84,7 +84,7 @@ fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
         }
     });
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
-    let error = device.upload(&upload, &mut to_the_end).unwrap_err();
+    let error = device.upload(&upload, &mut ignore_progress).unwrap_err();
     assert!(matches!(error, DeviceError::UploadTooSlow { arrived_bytes: 0, .. }), "{error}");
     let took = device.now().saturating_sub(started);
     assert!(took >= 10 * SECOND && took < 11 * SECOND, "{took:?}");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, StreamSettings, StreamStatus, Upload, to_the_end};
+use frixel_driver::{Device, DeviceError, StreamSettings, StreamStatus, Upload, ignore_progress};
 use frixel_layers::{Layer, Stream};
 use frixel_testkit::HEADER;
 use frixel_wire::message::{Command, Refusal};
@@ -16,7 +16,7 @@ fn playing() -> Device<VirtualLink> {
     let scene = frixel_testkit::scene(&HEADER, &[layer]);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
     let mut device = virtual_board();
-    device.upload(&upload, &mut to_the_end).unwrap();
+    device.upload(&upload, &mut ignore_progress).unwrap();
     device.commit(upload.scene_crc32()).unwrap();
     device.arm().unwrap();
     device.play().unwrap();

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload, to_the_end};
+use frixel_driver::{Bitmap, Device, DeviceError, Link, Upload, ignore_progress};
 use frixel_hil_sim::Board;
 use frixel_testkit::Random;
 use frixel_wire::hello::BoardLimits;
@@ -35,7 +35,7 @@ fn is_chunk(frame: &[u8]) -> bool {
 /// Uploads a picture of 62,500 samples and a scene.
 pub(crate) fn upload(device: &mut Device<VirtualLink>) -> Result<(), DeviceError> {
     let (samples, scene) = (samples(62_500), scene(0.25));
-    device.upload(&Upload { scene: &scene, bitmaps: vec![picture(&samples)] }, &mut to_the_end)
+    device.upload(&Upload { scene: &scene, bitmaps: vec![picture(&samples)] }, &mut ignore_progress)
 }
 
 /// Uploads picture and scene to a new host of the board, commits the scene, and checks that both have arrived.
@@ -234,7 +234,7 @@ fn a_refused_upload_is_not_sent() {
     let scene = scene(0.25);
     let mut device = virtual_board();
     let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
-    let error = device.upload(&upload, &mut to_the_end).unwrap_err();
+    let error = device.upload(&upload, &mut ignore_progress).unwrap_err();
     let full = Refusal::BitmapPoolFull { len: 66_000, free: 65_536 };
     assert!(matches!(error, DeviceError::Refused { refusal, .. } if refusal == full), "{error}");
     assert!(device.counters().wire_bytes < 200);
@@ -246,7 +246,7 @@ fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
     let mut device = virtual_board();
     let before = device.counters();
     let wrong = Bitmap { height: 249, ..picture(&samples) };
-    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut to_the_end).unwrap_err();
+    let error = device.upload(&Upload { scene: &scene, bitmaps: vec![wrong] }, &mut ignore_progress).unwrap_err();
     assert!(matches!(error, DeviceError::BitmapSize { found: 62_500, .. }), "{error}");
     assert_eq!(device.counters(), before);
 }
@@ -260,7 +260,7 @@ fn a_board_that_forgets_every_upload_is_given_up() {
     let mut device = connected(line);
     let (samples, scene) = (samples(6_250), scene(0.25));
     let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
-    let error = device.upload(&upload, &mut to_the_end).unwrap_err();
+    let error = device.upload(&upload, &mut ignore_progress).unwrap_err();
     assert!(matches!(error, DeviceError::UploadForgotten { total_bytes: 6_250, times: 4, .. }), "{error}");
     assert!(error.to_string().contains("reset the board"), "{error}");
     assert!(device.now() < Duration::from_secs(1));
@@ -273,7 +273,7 @@ fn a_slow_line_uploads_in_the_end() {
     for bytes_per_s in [11_520, 5_760, 2_880, 1_500] {
         let mut device = connected(VirtualLine::to(BOARD, bytes_per_s));
         let upload = Upload { scene: &scene, bitmaps: vec![picture(&samples)] };
-        device.upload(&upload, &mut to_the_end).unwrap();
+        device.upload(&upload, &mut ignore_progress).unwrap();
         let written = device.counters().wire_bytes;
         let line_s = written as f64 / f64::from(bytes_per_s);
         println!("{bytes_per_s} bytes a second: {:.1} s for {line_s:.1} s of bytes", device.now().as_secs_f64());

@@ -65,7 +65,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
         }
         compiled => compiled?,
     };
-    let judgement = judge(&program, &judged_rig(rig.board, touch), None, Advice::Sought, TO_THE_END);
+    let judgement = judge(&program, &judged_rig(rig.board, touch), Advice::Sought, TO_THE_END);
     let judgement = judgement.map_err(of_simulation)?;
     let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, judgement);
     check.notes.extend(files.outside().map(|path| {
@@ -104,7 +104,7 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
 fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
-    let judgement = judge(&draft, &judged_rig(rig.board, *touch), None, Advice::Omitted, TO_THE_END);
+    let judgement = judge(&draft, &judged_rig(rig.board, *touch), Advice::Omitted, TO_THE_END);
     let lines = feel::lines(&judgement.map_err(of_simulation)?);
     let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));
     print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)

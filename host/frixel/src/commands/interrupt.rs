@@ -1,5 +1,6 @@
 //! Ctrl-C, and the signal that requests a process to end.
 
+use std::ops::ControlFlow;
 use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,5 +36,10 @@ impl Interrupt {
 
     pub(super) fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
+    }
+
+    /// Breaks when the command should end, for use as [`GoesOn`](frixel_play::GoesOn).
+    pub(super) fn goes_on(&self) -> ControlFlow<()> {
+        if self.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

@@ -20,11 +20,11 @@ mod target;
 mod watch;
 mod with_log;
 
+use frixel_lab::simulate::PlayOptions;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use frixel_lab::recording::PlayOptions;
 
 use crate::output::{Effects, Report};
 

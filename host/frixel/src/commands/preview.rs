@@ -53,7 +53,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
     let rig = judged_rig(board, TouchConfig::REALISTIC);
-    let judgement = judge(&program, &rig, None, Advice::Omitted, TO_THE_END);
+    let judgement = judge(&program, &rig, Advice::Omitted, TO_THE_END);
     for (name, text) in feel::lines(&judgement.map_err(of_simulation)?) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }

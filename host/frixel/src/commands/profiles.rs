@@ -7,7 +7,7 @@ use crate::input;
 use crate::scene_file::{self, ProfileNames, SceneFileError};
 use anyhow::Result;
 use clap::Args;
-use frixel_hil_sim::{TouchConfig, WorldConfig};
+use frixel_hil_sim::{TouchConfig, WorldOptions};
 use frixel_scene::Screen;
 
 #[derive(Clone, Debug, Default, Args)]
@@ -53,10 +53,9 @@ impl TouchArgs {
         self.touch.as_deref().map(scene_file::touch_source).transpose()
     }
 
-    /// A world with this source, which is ideal or realistic already.
-    pub(super) fn applied_to(&self, world: WorldConfig, is_ideal: bool) -> Result<WorldConfig, SceneFileError> {
-        let source = self.source()?.map(|source| if is_ideal { source.without_losses() } else { source });
-        Ok(WorldConfig { touch: source.unwrap_or(world.touch), ..world })
+    /// A world with this source.
+    pub(super) fn world(&self, ideal: bool) -> Result<WorldOptions, SceneFileError> {
+        Ok(WorldOptions { ideal, touch: self.source()?, ..WorldOptions::default() })
     }
 }
 

@@ -7,7 +7,7 @@ use crate::output::draw_score_svg;
 use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use anyhow::Result;
 use clap::Args;
-use frixel_hil_sim::RigConfig;
+use frixel_hil_sim::Board;
 use frixel_lab::score::{Score, TrialPlan, Way};
 use frixel_play::TO_THE_END;
 use frixel_scene::compile;
@@ -61,16 +61,18 @@ pub(super) struct ScoreArgs {
 }
 
 pub(super) fn run(args: &ScoreArgs) -> Result<()> {
-    let rig = rig(args)?;
+    // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
+    // loses reports would otherwise turn the output off (docs/touch.md).
+    let (board, world) = (Board::SIMULATOR, args.touch.world(args.ideal)?);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]).chain(args.touch.file()));
     let file = |name: &str| OutputFile::new(&args.out.join(name), "--out", &inputs);
     let (csv, layers, svg) = (file("score.csv")?, file("score-layers.csv")?, file("score.svg")?);
     let scene = scene?;
-    let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-    let trials = trial_plan(args)?.of_people(args.people, &scene, &program, args.ideal, TO_THE_END)?;
+    let program = compile(&scene, &board.limits, board.tick_hz)?;
+    let trials = trial_plan(args)?.of_people(args.people, &scene, &program, TO_THE_END)?;
     let _folder = OutputFolder::open(&args.out)?;
-    let score = args.jobs.run(|| Score::of(&program, &rig, &trials, TO_THE_END))?.map_err(of_simulation)?;
+    let score = args.jobs.run(|| Score::of(&program, &world, &trials, TO_THE_END))?.map_err(of_simulation)?;
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let drawn = draw_score_svg(&format!("{scene}, simulated: {} plays", trials.len()), &score)?;
     let filled = [(&csv, score.to_csv()), (&layers, score.layers_csv()), (&svg, drawn)]
@@ -86,18 +88,6 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
         print_line(format_args!("  {:<30} {}", "wrote", file.path().display()))?;
     }
     Ok(())
-}
-
-/// The simulated board and its world.
-fn rig(args: &ScoreArgs) -> Result<RigConfig> {
-    let mut rig = RigConfig::default();
-    if !args.ideal {
-        rig.world = rig.world.realistic();
-    }
-    rig.world = args.touch.applied_to(rig.world, args.ideal)?;
-    // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
-    // loses reports would otherwise turn the output off (docs/touch.md).
-    Ok(rig)
 }
 
 /// What each finger does.

@@ -8,9 +8,8 @@ use crate::output_file::Inputs;
 use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
 use anyhow::Result;
-use frixel_hil_sim::{BoardMemory, Person, Rig, RigConfig, Stroke};
-use frixel_lab::default_stroke::REPEAT_PAUSE_S;
-use frixel_model::FrictionLaw;
+use frixel_hil_sim::{Board, BoardMemory, FingertipConfig, OwnFinger, Person, Rig, RigConfig, Stroke, WorldOptions};
+use frixel_lab::simulate::REPEAT_PAUSE_S;
 use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
@@ -35,14 +34,10 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
         None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(of_generated_stroke)?,
     };
     let stroke = stroke.looped(REPEAT_PAUSE_S).map_err(of_generated_stroke)?;
-    let mut config = RigConfig::default();
-    let own_finger = own_finger(args, &mut config)?;
-    config.world = args.touch.applied_to(config.world, args.ideal)?;
+    let finger = own_finger(args)?;
+    let config = RigConfig::default().with(&WorldOptions { finger, ..args.touch.world(args.ideal)? });
     let mut memory = BoardMemory::new();
     let mut rig = Rig::new(&mut memory, &config, stroke, args.seed)?;
-    if let Some(contact) = own_finger {
-        rig.world_mut().set_own_finger(contact);
-    }
     let tick_hz = config.board.tick_hz;
     let profiles = [&args.finger, &args.screen].into_iter().flatten().map(Path::new);
     let inputs = Inputs::new(args.stroke.file().into_iter().chain(profiles).chain(args.touch.file()));
@@ -50,7 +45,7 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();
     note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
-    let dropped = server.run(&mut rig, &|| interrupt.is_requested())?;
+    let dropped = server.run(&mut rig, &|| interrupt.goes_on())?;
     if dropped.times > 0 {
         let Dropped { seconds, times } = dropped;
         note(format_args!(
@@ -62,23 +57,16 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
     Ok(())
 }
 
-/// Sets the effects of the world, and returns the contact of the finger that stays whatever scene plays, if there is
-/// one.
-fn own_finger(args: &SimArgs, config: &mut RigConfig) -> Result<Option<FrictionLaw>> {
-    if !args.ideal {
-        config.world = config.world.realistic();
-    }
+/// The finger that stays whatever scene plays, if there is one.
+fn own_finger(args: &SimArgs) -> Result<Option<OwnFinger>> {
     if let Some(seed) = args.finger_seed {
-        let person = Person::drawn(seed);
-        if !args.ideal {
-            config.world.fingertip = person.fingertip;
-        }
         let coating_gap_m = 1e-6 * screen(args.screen.as_deref())?.1.coating_gap_um();
-        return person.contact(coating_gap_m).map(|contact| Some(contact.into())).map_err(of_finger);
+        return Person::drawn(seed).own_finger(coating_gap_m).map(Some).map_err(of_finger);
     }
     let Some(finger) = &args.finger else { return Ok(None) };
     let names = ProfileNames { finger: Some(finger.clone()), screen: args.screen.clone() };
     let scene = names.applied_to(Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?)?;
-    let program = compile(&scene, &config.board.limits, config.board.tick_hz)?;
-    program.header.friction_law().map(Some).map_err(of_finger)
+    let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz)?;
+    let law = program.header.friction_law().map_err(of_finger)?;
+    Ok(Some(OwnFinger { law, fingertip: FingertipConfig::REALISTIC }))
 }

@@ -7,7 +7,7 @@ use crate::input;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
-use frixel_lab::recording::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
+use frixel_lab::simulate::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Shown;
 

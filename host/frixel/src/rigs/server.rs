@@ -1,5 +1,6 @@
 //! A virtual board behind a pseudo-terminal, paced by the wall clock.
 
+use frixel_play::GoesOn;
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -41,14 +42,14 @@ impl Server {
         self.terminal.path()
     }
 
-    /// Runs `rig` at the pace of the wall clock until `interrupted` returns true. The finger starts its stroke at once.
+    /// Runs `rig` at the pace of the wall clock until `goes_on` breaks. The finger starts its stroke at once.
     /// Ticks and events are written to the files. Returns the time that was dropped, because the server was too far
     /// behind the wall clock to catch up.
-    pub fn run(mut self, rig: &mut Rig, interrupted: &dyn Fn() -> bool) -> Result<Dropped> {
+    pub fn run(mut self, rig: &mut Rig, goes_on: GoesOn<'_>) -> Result<Dropped> {
         let tick_period_s = 1.0 / f64::from(rig.tick_hz());
         rig.world_mut().start_stroke();
         let (begin, mut pace) = (Instant::now(), Pace::default());
-        while !interrupted() {
+        while goes_on().is_continue() {
             self.exchange(rig)
                 .map_err(|error| anyhow!("the virtual board's pseudo-terminal {} broke: {error}", self.path()))?;
             let virtual_s = rig.tick() as f64 * tick_period_s;

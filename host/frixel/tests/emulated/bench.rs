@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use frixel::rigs::EmulatedRig;
 use frixel::scene_file;
-use frixel_driver::{Device, Link, PollingLink, to_the_end};
+use frixel_driver::{Device, Link, PollingLink, ignore_progress};
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
@@ -60,7 +60,7 @@ impl Bench {
     /// Plays one of the bundled scenes, and waits until the board drives.
     pub(crate) fn play(&self, scene: &str) -> Device<impl Link> {
         let mut device = self.connect();
-        start(&mut device, &program(scene), &mut to_the_end).unwrap();
+        start(&mut device, &program(scene), &mut ignore_progress).unwrap();
         let end = device.now() + DRIVEN_WITHIN;
         while self.board.output().unwrap().dac_code.bits() == 0 {
             assert!(device.now() < end, "the board does not drive");

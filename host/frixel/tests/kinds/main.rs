@@ -49,15 +49,8 @@ fn stroke(path: StrokePath) -> Stroke {
 fn play(program: &Program, path: StrokePath) -> Vec<FeltRow> {
     let stroke = stroke(path);
     let seconds = stroke.duration_s();
-    let simulation = Simulation {
-        rig: RigConfig::default(),
-        stroke,
-        seconds,
-        seed: 1,
-        ticks_per_row: 1,
-        own_finger: None,
-        through_finger: false,
-    };
+    let simulation =
+        Simulation { rig: RigConfig::default(), stroke, seconds, seed: 1, ticks_per_row: 1, through_finger: false };
     simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.rows().to_vec()
 }
 

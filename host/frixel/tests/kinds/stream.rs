@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use frixel_driver::{Device, PollingLink, StreamSettings, to_the_end};
+use frixel_driver::{Device, PollingLink, StreamSettings, ignore_progress};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_play::Recorded as _;
@@ -34,7 +34,7 @@ fn play(program: &Program) -> Vec<FeltRow> {
     let mut stream = RigStream::new(rig);
     *stream.recorder_mut() = recorder;
     let mut device = Device::connect(PollingLink::new(stream)).unwrap();
-    frixel_play::start(&mut device, program, &mut to_the_end).unwrap();
+    frixel_play::start(&mut device, program, &mut ignore_progress).unwrap();
     device.start_stream(StreamSettings::new(SAMPLE_HZ)).unwrap();
     let sample = |number: u32| {
         let turns = WAVE_HZ * f64::from(number) / f64::from(SAMPLE_HZ);

@@ -1,7 +1,7 @@
 //! The finger of a calibration on the simulator.
 
-use frixel_hil_sim::{FingertipConfig, Person};
-use frixel_model::{Contact, Finger, LoadedContact, ParameterError};
+use frixel_hil_sim::{FingertipConfig, OwnFinger, Person};
+use frixel_model::{Contact, Finger, ParameterError};
 use frixel_scene::{Elasticity, FingerProfile};
 
 use crate::fit::CONVENTIONAL_STIFFNESS_PA_PER_M;
@@ -20,21 +20,16 @@ pub fn example_finger() -> Finger<f64> {
     }
 }
 
-/// The finger under a simulated board, on a coating with this effective gap: its contact, and what it does beside the
-/// model. It is that of the person of a seed, or the example finger.
-pub fn simulated_finger(
-    seed: Option<u64>,
-    coating_gap_m: f64,
-) -> Result<(LoadedContact<f64>, FingertipConfig), ParameterError> {
+/// The finger under a simulated board, on a coating with this effective gap: that of the person of a seed, or the
+/// example finger.
+pub fn simulated_finger(seed: Option<u64>, coating_gap_m: f64) -> Result<OwnFinger, ParameterError> {
     if let Some(seed) = seed {
-        let person = Person::drawn(seed);
-        let contact = person.contact(coating_gap_m)?;
-        return Ok((contact, person.fingertip));
+        return Person::drawn(seed).own_finger(coating_gap_m);
     }
     let example = FingerProfile::example();
     let contact = Contact::new(&example_finger(), coating_gap_m + 1e-6 * example.skin_gap_um);
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
-    Ok((contact?, FingertipConfig::REALISTIC))
+    Ok(OwnFinger { law: contact?.into(), fingertip: FingertipConfig::REALISTIC })
 }
 
 /// The seed of what is random in the simulation of a person: two people with one `--seed` do not share their noise and

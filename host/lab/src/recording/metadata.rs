@@ -37,7 +37,7 @@ pub struct Metadata {
     pub ticks_per_row: u32,
     /// Code of the participant, if one was given.
     pub participant: Option<String>,
-    /// How the play was made, a [`super::PlayOptions`]: what plays it again reads this.
+    /// How the play was made, a [`PlayOptions`](crate::simulate::PlayOptions): what plays it again reads this.
     pub play: Value,
     /// Text of the scene's file.
     #[serde(skip)]

@@ -12,11 +12,9 @@ mod fields;
 mod metadata;
 mod parquet_reader;
 mod parquet_writer;
-mod play_options;
 mod replay;
 mod replayed_changes;
 mod seal;
-mod simulation;
 
 use std::fmt::{self, Display};
 
@@ -29,9 +27,7 @@ pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile}
 pub(crate) use parquet_reader::MAGIC;
 pub use parquet_reader::is_of_person;
 pub use parquet_writer::{ParquetWriter, table_parquet};
-pub use play_options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 pub use replay::ReplayError;
-pub use simulation::PlayOptionsError;
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
 pub const ROWS_PER_GROUP: usize = 65_536;

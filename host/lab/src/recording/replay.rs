@@ -9,8 +9,8 @@ use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, brief, c
 use thiserror::Error;
 
 use super::replayed_changes::ReplayedChanges;
-use super::simulation::PlayOptionsError;
-use super::{Metadata, PlayOptions, Recording, SourceFile};
+use super::{Metadata, Recording, SourceFile};
+use crate::simulate::{PlayOptions, PlayOptionsError};
 use crate::stroke_file::{StrokeFile, StrokeFileError};
 
 /// What messages call the scene.

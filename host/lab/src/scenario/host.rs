@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink, to_the_end};
+use frixel_driver::{Device, DeviceError, PollingLink, ignore_progress};
 use frixel_play::{PlayError, Player, load};
 use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -169,7 +169,7 @@ fn perform_with(
     scene: &str,
     program: &dyn Fn(&str) -> Option<Program>,
 ) -> Result<(), CommandFailure> {
-    let goes_on = &mut to_the_end;
+    let goes_on = &mut ignore_progress;
     match action {
         Action::Play => {
             let Some(program) = program(scene) else { return Ok(()) };

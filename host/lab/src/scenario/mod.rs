@@ -16,12 +16,12 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use frixel_hil_sim::{
-    BoardMemory, BoardRig, Point, Rig, RigConfig, RigError, Stroke, StrokeError, WorldConfig, WorldError,
+    BoardMemory, BoardRig, Point, Rig, RigConfig, RigError, Stroke, StrokeError, WorldConfig, WorldError, WorldOptions,
 };
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
-use crate::default_stroke::REPEAT_PAUSE_S;
+use crate::simulate::REPEAT_PAUSE_S;
 
 use host::Host;
 use line::ScenarioLine;
@@ -128,7 +128,7 @@ pub fn stroke_and_world(
     programs: &Programs,
     config: WorldConfig,
 ) -> Result<(Stroke, WorldConfig), ScenarioError> {
-    let world = if scenario.is_realistic { config.realistic() } else { config };
+    let world = config.with(&WorldOptions { ideal: !scenario.is_realistic, ..WorldOptions::default() });
     let stroke = if let Some(stroke) = &scenario.stroke {
         let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
         Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s)

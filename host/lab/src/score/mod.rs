@@ -14,8 +14,7 @@ use std::sync::Arc;
 
 use frixel_felt::fidelity::{Fidelity, FidelitySample};
 use frixel_felt::judge::{Advice, Judgement, changes_along};
-use frixel_hil_sim::{FingertipConfig, RigConfig, Stroke, WorldConfig};
-use frixel_model::{FrictionLaw, LoadedContact};
+use frixel_hil_sim::{OwnFinger, RigConfig, Stroke, WorldOptions};
 use frixel_play::{GoesOn, Simulation, SimulationError, judge, simulate};
 use frixel_scene::{LayerTitle, Program, TouchSource};
 use rayon::prelude::*;
@@ -49,25 +48,20 @@ pub struct Trial {
 pub struct TrialFinger {
     /// Number of the person.
     pub person: u64,
-    /// Contact of the finger with the screen.
-    pub contact: LoadedContact<f64>,
-    /// What the finger does beside the contact model; absent in an ideal world.
-    pub fingertip: Option<FingertipConfig>,
+    /// The person's finger.
+    pub finger: OwnFinger,
 }
 
 impl Trial {
-    /// Plays the trial on the simulated board of `rig`, and returns what the finger felt and the reference: a sample
+    /// Plays the trial on the simulated board in a world, and returns what the finger felt and the reference: a sample
     /// for every quarter of a millisecond.
     pub fn play(
         &self,
         program: &Program,
-        rig: &RigConfig,
+        world: &WorldOptions,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<FidelitySample>, SimulationError> {
-        let fingertip = self.finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
-        let rig = RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig };
-        let own_finger = self.finger.map(|finger| finger.contact.into());
-        let simulation = Simulation::of_stroke(rig, Stroke::clone(&self.stroke), self.seed, own_finger);
+        let simulation = Simulation::of_stroke(rig(world, self.finger), Stroke::clone(&self.stroke), self.seed);
         Ok(simulate(program, &simulation, None, goes_on)?.samples())
     }
 }
@@ -111,24 +105,24 @@ pub struct Score {
 }
 
 impl Score {
-    /// Plays trials of a program on the simulated board of `rig`, and scores them.
+    /// Plays trials of a program on the simulated board in a world, and scores them.
     ///
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
     /// of threads. When `goes_on` breaks, it is that of what was played.
     pub fn of(
         program: &Program,
-        rig: &RigConfig,
+        world: &WorldOptions,
         trials: &[Trial],
         goes_on: GoesOn<'_>,
     ) -> Result<Self, SimulationError> {
-        let fingers = judgements(program, rig, trials, goes_on)?;
+        let fingers = judgements(program, world, trials, goes_on)?;
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
             if goes_on().is_break() {
                 break;
             }
             let felt = |trial: &Trial| {
-                trial.play(program, rig, goes_on).map(|samples| {
+                trial.play(program, world, goes_on).map(|samples| {
                     let fidelity = Fidelity::of(&samples);
                     (samples, fidelity)
                 })
@@ -149,7 +143,7 @@ impl Score {
         let score = Self {
             simulated: String::new(),
             verdict: String::new(),
-            touch_source: (&rig.world.touch).into(),
+            touch_source: (&rig(world, None).world.touch).into(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
             levels: layers::levels(program, &fingers),
@@ -161,10 +155,16 @@ impl Score {
     }
 }
 
+/// The simulated board in a world, under the finger of a trial.
+fn rig(world: &WorldOptions, finger: Option<TrialFinger>) -> RigConfig {
+    let finger = finger.map(|finger| finger.finger).or(world.finger);
+    RigConfig::default().with(&WorldOptions { finger, ..*world })
+}
+
 /// What each finger of some trials feels of a program.
 fn judgements(
     program: &Program,
-    rig: &RigConfig,
+    world: &WorldOptions,
     trials: &[Trial],
     goes_on: GoesOn<'_>,
 ) -> Result<Vec<Judgement>, SimulationError> {
@@ -175,12 +175,7 @@ fn judgements(
             fingers.push(trial.finger);
         }
     }
-    let judged = |finger: &Option<TrialFinger>| {
-        let fingertip = finger.and_then(|finger| finger.fingertip).unwrap_or(rig.world.fingertip);
-        let rig = RigConfig { world: WorldConfig { fingertip, ..rig.world }, ..*rig };
-        let own_finger = finger.map(|finger| FrictionLaw::from(finger.contact));
-        judge(program, &rig, own_finger, Advice::Omitted, &|| goes_on())
-    };
+    let judged = |finger: &Option<TrialFinger>| judge(program, &rig(world, *finger), Advice::Omitted, goes_on);
     fingers.par_iter().map(judged).collect()
 }
 

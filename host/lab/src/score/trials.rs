@@ -64,13 +64,12 @@ impl TrialPlan {
         people: Option<u64>,
         scene: &Scene,
         program: &Program,
-        is_ideal: bool,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, TrialsError> {
         let Some(people) = people else { return Ok(self.trials(program, None, goes_on)?) };
         let coating_gap_um = scene.screen().coating_gap_um();
         let of_person = |person| {
-            let finger = TrialFinger::of_person(person, coating_gap_um, is_ideal)?;
+            let finger = TrialFinger::of_person(person, coating_gap_um)?;
             Ok(self.trials(program, Some(finger), goes_on)?)
         };
         let trials = (1..=people).take_while(|_| goes_on().is_continue()).map(of_person);
@@ -125,11 +124,8 @@ impl TrialPlan {
 }
 
 impl TrialFinger {
-    /// The finger of a person, from 1, on a screen whose coating has an effective gap of so many micrometres. In an
-    /// ideal world it does nothing beside the contact model.
-    pub fn of_person(person: u64, coating_gap_um: f64, is_ideal: bool) -> Result<Self, ParameterError> {
-        let drawn = Person::drawn(person);
-        let contact = drawn.contact(1e-6 * coating_gap_um)?;
-        Ok(Self { person, contact, fingertip: (!is_ideal).then_some(drawn.fingertip) })
+    /// The finger of a person, from 1, on a screen whose coating has an effective gap of so many micrometres.
+    pub fn of_person(person: u64, coating_gap_um: f64) -> Result<Self, ParameterError> {
+        Ok(Self { person, finger: Person::drawn(person).own_finger(1e-6 * coating_gap_um)? })
     }
 }

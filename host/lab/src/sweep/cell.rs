@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use frixel_felt::judge::Verdict;
-use frixel_hil_sim::{Person, RigConfig, StrokeError, TouchConfig};
+use frixel_hil_sim::{Board, Person, StrokeError, TouchConfig, WorldOptions};
 use frixel_model::ParameterError as ContactError;
 use frixel_play::{GoesOn, SimulationError};
 use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};
@@ -171,11 +171,11 @@ impl Cell {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
-        let (scene, rig, program) = self.compiled()?;
+        let (scene, program) = self.compiled()?;
         let coating_gap_um = scene.screen().coating_gap_um();
         let person = self.person;
-        let finger = TrialFinger::of_person(person, coating_gap_um, self.ideal)
-            .map_err(|source| CellError::Finger { person, source })?;
+        let finger =
+            TrialFinger::of_person(person, coating_gap_um).map_err(|source| CellError::Finger { person, source })?;
         let trials = TrialPlan {
             way: match self.stroke {
                 Hand::Human => Way::Human,
@@ -188,7 +188,7 @@ impl Cell {
             median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
         };
         let trials = trials.trials(&program, Some(finger), goes_on)?;
-        let score = Score::of(&program, &rig, &trials, goes_on)?;
+        let score = Score::of(&program, &self.world()?, &trials, goes_on)?;
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 
@@ -197,10 +197,11 @@ impl Cell {
         self.compiled().map(drop)
     }
 
-    fn compiled(&self) -> Result<(Scene, RigConfig, Program), CellError> {
-        let (scene, rig) = (self.scene()?, self.rig()?);
-        let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-        Ok((scene, rig, program))
+    fn compiled(&self) -> Result<(Scene, Program), CellError> {
+        self.world()?;
+        let (scene, board) = (self.scene()?, Board::SIMULATOR);
+        let program = compile(&scene, &board.limits, board.tick_hz)?;
+        Ok((scene, program))
     }
 
     fn scene(&self) -> Result<Scene, CellError> {
@@ -215,17 +216,14 @@ impl Cell {
         Ok(scene.with_screen(screen, name))
     }
 
-    fn rig(&self) -> Result<RigConfig, CellError> {
+    fn world(&self) -> Result<WorldOptions, CellError> {
         let Profile { name, text } = &self.touch;
         let touch = match text {
             Some(text) => parse_touch_source(text, name)?,
             None => TouchConfig::bundled(name)
                 .ok_or_else(|| CellError::NotBundled { what: "touch source", name: name.clone() })?,
         };
-        let mut rig = RigConfig::default();
-        rig.world = if self.ideal { rig.world } else { rig.world.realistic() };
-        rig.world.touch = if self.ideal { touch.without_losses() } else { touch };
-        Ok(rig)
+        Ok(WorldOptions { ideal: self.ideal, touch: Some(touch), ..WorldOptions::default() })
     }
 
     fn result(&self, score: &Score, voltage_v_rms: f64) -> CellResult {

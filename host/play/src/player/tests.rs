@@ -2,7 +2,7 @@ mod keep_alive;
 
 use std::collections::BTreeMap;
 
-use frixel_driver::{ByteStream, LinkClosed, PollingLink, to_the_end};
+use frixel_driver::{ByteStream, LinkClosed, PollingLink, ignore_progress};
 use frixel_felt::recorder::PlayListener;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::{LayerSetting, Scene, compile};
@@ -110,7 +110,7 @@ fn line() -> Line {
 
 fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
     let mut player = Player::new(Device::connect(link).unwrap());
-    player.start(program, 0, &mut to_the_end).unwrap();
+    player.start(program, 0, &mut ignore_progress).unwrap();
     player
 }
 

@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration;
 
 use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-use frixel_lab::default_stroke::REPEAT_PAUSE_S;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldOptions};
+use frixel_lab::simulate::REPEAT_PAUSE_S;
 use frixel_play::RigStream;
 use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
 use frixel_scene::Program;
@@ -161,10 +161,7 @@ fn simulated(
 ) -> Result<(), Trouble> {
     let stroke =
         Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
-    let mut config = RigConfig::default();
-    config.world = config.world.realistic();
-    // A draft may take longer than a board has time for.
-    config.board.limits.tick_cycles_max = u32::MAX;
+    let config = RigConfig::default().for_drafts().with(&WorldOptions::default());
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;
     let link = Observed::new(PollingLink::new(RigStream::new(rig)));

@@ -53,8 +53,5 @@ fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Res
     let simulation = plan.simulation(args, scene, &RigConfig::of(*board))?;
     let mut world = World::new(simulation.rig.world, simulation.stroke, simulation.seed)?;
     world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
-    if let Some(finger) = simulation.own_finger {
-        world.set_own_finger(finger);
-    }
     Ok((plan, world))
 }

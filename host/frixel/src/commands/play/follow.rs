@@ -92,7 +92,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let Self { args, plan, player, bars, interrupt, .. } = self;
         let started = player.start(plan.program.clone(), plan.telemetry_period_ticks, &mut |progress| {
             bars.upload(progress);
-            if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            interrupt.goes_on()
         });
         if args.watch && started.is_ok() {
             note(format_args!("frixel: {} plays; what is saved replaces it; Ctrl-C ends", args.scene.display()));
@@ -200,13 +200,7 @@ impl<L: RecordedLink> Play<'_, L> {
         }
         let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
-        let goes_on = || {
-            if self.interrupt.is_requested() && !is_requested {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        };
+        let goes_on = || if is_requested { ControlFlow::Continue(()) } else { self.interrupt.goes_on() };
         let verdicts = recorder.take_judged().and_then(|samples| in_play(program, &samples, &goes_on));
         let report = report.with_verdicts(verdicts, recorder.t_s());
         let marked = (recorder.markers(), is_requested || ended.is_err());

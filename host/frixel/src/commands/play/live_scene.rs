@@ -190,7 +190,7 @@ mod tests {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
 
-    use frixel_driver::{Device, PollingLink, to_the_end};
+    use frixel_driver::{Device, PollingLink, ignore_progress};
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
     use frixel_play::RigStream;
@@ -228,7 +228,7 @@ mod tests {
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
             let device = Device::connect(PollingLink::new(RigStream::new(rig))).unwrap();
             let mut player = Player::recording(device, recorder);
-            player.start(program, 0, &mut to_the_end).unwrap();
+            player.start(program, 0, &mut ignore_progress).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
             Self { folder, player, live: LiveScene::new(&args, Target::Port, files, outputs) }
         }

@@ -1,5 +1,6 @@
 //! The plan of a play, which is checked as a whole before any file is written.
 
+use frixel_lab::simulate::PlayOptionsError;
 use std::time::Duration;
 
 use crate::commands::error::of_finger;
@@ -7,7 +8,6 @@ use crate::output::{Effects, WorldReport};
 use anyhow::{Result, bail};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::RigConfig;
-use frixel_lab::recording::PlayOptionsError;
 use frixel_play::{Feed, Simulation};
 use frixel_scene::{Program, Scene, Shown};
 use frixel_wire::hello::{BoardKind, BoardLimits};

@@ -5,9 +5,8 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
-use frixel_lab::recording::{
-    GrowingFile, Metadata, ParquetWriter, PlayOptions, ROWS_PER_GROUP, play_fields, play_values,
-};
+use frixel_lab::recording::{GrowingFile, Metadata, ParquetWriter, ROWS_PER_GROUP, play_fields, play_values};
+use frixel_lab::simulate::PlayOptions;
 
 use crate::commands::error::at;
 use crate::output_file::{FileWriter, Inputs, OutputFile, Recording};

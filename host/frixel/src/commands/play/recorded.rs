@@ -5,7 +5,8 @@ use std::path::Path;
 
 use anyhow::Result;
 use frixel_driver::{Device, Link};
-use frixel_lab::recording::{Metadata, PlayOptions, SourceFile};
+use frixel_lab::recording::{Metadata, SourceFile};
+use frixel_lab::simulate::PlayOptions;
 
 use crate::commands::error::reading;
 use crate::input;

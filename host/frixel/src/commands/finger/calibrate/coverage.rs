@@ -14,11 +14,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use clap::Parser;
-use frixel_driver::{Device, PollingLink, to_the_end};
+use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{
-    BoardMemory, BoardView, FingertipConfig, Person, Point, Rig, RigConfig, RigTick, Stroke, TouchConfig,
-    example_finger,
+    Board, BoardMemory, BoardView, FingertipConfig, OwnFinger, Person, Point, Rig, RigConfig, RigTick, Stroke,
+    TouchConfig, WorldOptions, example_finger,
 };
 use frixel_lab::calibration::{align, write_csv};
 use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
@@ -72,10 +72,6 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
 
 /// What a board that drives 150 V rms adds to the friction of a person in steady sliding under a load, in newtons.
 fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
-    let rig = RigConfig::default();
-    let mut config = RigConfig { world: rig.world.realistic(), ..rig };
-    config.world.touch = TouchConfig::IDEAL;
-    config.world.fingertip = FingertipConfig { load_sd_n: 0.0, noise_rms_n: 0.0, ..person.fingertip };
     // What the scene's finger has at 150 V, a little less, so that rounding stays within reach.
     let asked_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
     let scene = format!(
@@ -83,18 +79,21 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
          above = \"natural\"\nfriction_n = {asked_n}\n"
     );
     let scene = Scene::parse(&scene, "steady", &BTreeMap::new()).unwrap();
-    let program = compile(&scene, &config.board.limits, config.board.tick_hz).unwrap();
+    let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap();
     // The person's friction coefficient under this load, in the contact whose own load it is.
     let gain = (load_n / person.normal_load_n).powf(person.fingertip.load_exponent);
     let finger = Finger { friction_coefficient: gain * person.finger.friction_coefficient, ..person.finger };
     let gap_m = person.skin_gap_m + 1e-6 * Screen::example().coating_gap_um();
     let contact = Contact::new(&finger, gap_m).unwrap().under_load(load_n).unwrap();
 
+    let fingertip = FingertipConfig { load_sd_n: 0.0, noise_rms_n: 0.0, ..person.fingertip };
+    let finger = Some(OwnFinger { law: contact.into(), fingertip });
+    let world = WorldOptions { touch: Some(TouchConfig::IDEAL), finger, ..WorldOptions::default() };
+    let config = RigConfig::default().with(&world);
     let at = |x_m| Point { x_m, y_m: 0.04 };
     let stroke = Stroke::constant_speed(at(0.03), at(0.09), 0.06).unwrap();
     let mut memory = BoardMemory::new();
-    let mut rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
-    rig.world_mut().set_own_finger(contact);
+    let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
     let hz = f64::from(config.board.tick_hz);
     let (ticks, measured) = ((STEADY_S * hz) as u64, (MEASURED_S * hz) as u64);
     let (mut tick, mut sum_n, mut volts) = (0, 0.0, 0.0);
@@ -110,7 +109,7 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, ticks, 40).unwrap();
     let line = RigStream::new(rig).observed(observe);
     let mut player = Player::recording(Device::connect(PollingLink::new(line)).unwrap(), recorder);
-    player.start(program, 0, &mut to_the_end).unwrap();
+    player.start(program, 0, &mut ignore_progress).unwrap();
     while player.recorder_mut().ticks_left() > 0 {
         player.step(Duration::MAX).unwrap();
     }

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use frixel_driver::{Device, to_the_end};
+use frixel_driver::{Device, ignore_progress};
 use frixel_felt::recorder::{FeltRow, Recorder};
 use frixel_lab::calibration::{BoardRow, Protocol, write_board};
 use frixel_play::{Feed, Player};
@@ -51,7 +51,7 @@ impl Plan {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
         let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
         let mut player = Player::recording(device, recorder.map_err(of_finger)?);
-        player.start(self.program.clone(), telemetry_ticks, &mut to_the_end)?;
+        player.start(self.program.clone(), telemetry_ticks, &mut ignore_progress)?;
         let samples = self.protocol.samples().map_err(of_finger)?;
         player.stream(Feed::of(samples, self.protocol.sample_hz()))?;
         Ok(player)

@@ -5,9 +5,8 @@ use std::time::Duration;
 
 use anyhow::{Result, bail};
 use frixel_driver::{Device, PollingLink};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, WorldOptions};
 use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simulated_finger, simulation_seed};
-use frixel_model::LoadedContact;
 use frixel_play::RigStream;
 use frixel_wire::hello::Hello;
 
@@ -40,27 +39,23 @@ pub(super) fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrup
 pub(super) struct Simulated {
     plan: Plan,
     config: RigConfig,
-    contact: LoadedContact<f64>,
     seed: u64,
 }
 
 impl Simulated {
     pub(super) fn new(args: &CalibrateArgs) -> Result<Self> {
         let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
-        let (contact, fingertip) = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
-        let rig = RigConfig::default();
-        let mut config = RigConfig { world: rig.world.realistic(), ..rig };
-        config.world.fingertip = fingertip;
+        let finger = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
+        let config = RigConfig::default().with(&WorldOptions { finger: Some(finger), ..WorldOptions::default() });
         let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
-        Ok(Self { plan, config, contact, seed: simulation_seed(args.seed, args.finger_seed) })
+        Ok(Self { plan, config, seed: simulation_seed(args.seed, args.finger_seed) })
     }
 
     /// Plays the calibration, and returns what the board reported and what the sensor under the screen measured.
     pub(super) fn record(&self, interrupt: &Interrupt) -> Result<Recorded> {
         let stroke = self.plan.protocol.stroke().map_err(of_generated_stroke)?;
         let mut memory = BoardMemory::new();
-        let mut rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
-        rig.world_mut().set_own_finger(self.contact);
+        let rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
         let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
         let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
         let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;

@@ -1,13 +1,18 @@
-//! From the options of a play to its board, world, stroke and finger.
+//! From the options of a play to its board, world, stroke and finger: the one way for `play`, `replay` and Python.
+//!
+//! A world without a play of its own, as in a score or a scenario, is made of [`WorldOptions`] alone.
 
-use frixel_hil_sim::{Person, RigConfig, Stroke, StrokeError, TouchConfig, WorldConfig};
+mod default_stroke;
+mod options;
+
+use frixel_hil_sim::{Person, RigConfig, Stroke, StrokeError, TouchConfig, WorldOptions};
 use frixel_model::ParameterError;
 use frixel_play::Simulation;
 use frixel_scene::{CompileError, Program, Scene};
 use thiserror::Error;
 
-use super::play_options::{PlayOptions, StrokeOptionsError};
-use crate::default_stroke::{REPEAT_PAUSE_S, default_stroke};
+pub use default_stroke::{REPEAT_PAUSE_S, default_stroke};
+pub use options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 
 /// Why options describe no play.
 #[derive(Debug, Error)]
@@ -45,7 +50,6 @@ impl PlayOptions {
         (stroke, touch): (Option<Stroke>, Option<TouchConfig>),
         rig: &RigConfig,
     ) -> Result<Simulation, PlayOptionsError> {
-        let mut rig = *rig;
         let tick_hz = rig.board.tick_hz;
         if self.rows_hz == 0 || !tick_hz.is_multiple_of(self.rows_hz) {
             return Err(PlayOptionsError::RowRate { found: self.rows_hz, tick_hz });
@@ -59,32 +63,22 @@ impl PlayOptions {
         let seconds = seconds.unwrap_or(stroke.duration_s());
         let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
-        let person = self.finger_seed.map(Person::drawn);
-        let contact =
-            person.as_ref().map(|person| person.contact(1e-6 * scene.screen().coating_gap_um())).transpose()?;
-        rig.world = self.world(rig.world, person.as_ref(), touch);
-        // A draft may take longer than a board has time for.
-        rig.board.limits.tick_cycles_max = u32::MAX;
+        let own_finger = |seed| Person::drawn(seed).own_finger(1e-6 * scene.screen().coating_gap_um());
+        let world = WorldOptions {
+            ideal: self.ideal,
+            no_leakage: self.no_leakage,
+            touch,
+            finger: self.finger_seed.map(own_finger).transpose()?,
+        };
         Ok(Simulation {
-            rig,
+            rig: rig.for_drafts().with(&world),
             seconds,
             seed: self.seed,
             ticks_per_row: tick_hz / self.rows_hz,
-            own_finger: contact.map(Into::into),
             // In steady sliding, the simulated finger is then more than the scene's under its load.
-            through_finger: !self.ideal || person.is_some() || stroke.has_loads(),
+            through_finger: !self.ideal || world.finger.is_some() || stroke.has_loads(),
             stroke,
         })
-    }
-
-    fn world(&self, ideal: WorldConfig, person: Option<&Person>, touch: Option<TouchConfig>) -> WorldConfig {
-        if self.ideal {
-            return WorldConfig { touch: touch.map_or(ideal.touch, TouchConfig::without_losses), ..ideal };
-        }
-        let realistic = ideal.realistic();
-        let fingertip = person.map_or(realistic.fingertip, |person| person.fingertip);
-        let fingertip = if self.no_leakage { fingertip.without_leakage() } else { fingertip };
-        WorldConfig { fingertip, touch: touch.unwrap_or(realistic.touch), ..realistic }
     }
 }
 
