@@ -6,7 +6,7 @@ use frixel_board::hardware::Hardware;
 use frixel_board::serial::RECEIVE_WINDOW;
 use frixel_board::start::describe;
 use frixel_control::Board;
-use frixel_session::store::{Ceilings, check_touched_board};
+use frixel_session::store::{CeilingPolicy, check_touched_board};
 use frixel_wire::hello::BoardLimits;
 
 use crate::adc::Adc;
@@ -48,8 +48,8 @@ pub const LIMITS: BoardLimits = BoardLimits {
 const _: () = assert!(check_touched_board(&LIMITS).is_ok());
 
 /// Whether stored limits above the ceilings are refused.
-pub const CEILINGS: Ceilings =
-    if cfg!(feature = "limits-above-ceilings") { Ceilings::Lifted } else { Ceilings::InForce };
+pub const CEILINGS: CeilingPolicy =
+    if cfg!(feature = "limits-above-ceilings") { CeilingPolicy::Lifted } else { CeilingPolicy::InForce };
 
 /// The board's description, with the cause of the last reset.
 pub fn board(last_reset: &LastReset) -> Board {

@@ -16,7 +16,7 @@ use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
 use frixel_drivers::serial::SerialLink;
 use frixel_drivers::state_light::StateLight;
-use frixel_session::store::{Ceilings, Flash, Slot, load_limits};
+use frixel_session::store::{CeilingPolicy, Flash, Slot, load_limits};
 
 use crate::fault::LastReset;
 use crate::hardware::{Dac, Hardware};
@@ -37,7 +37,12 @@ pub fn prepare(dac: &mut impl Dac) {
 /// The description of a board that starts: `built_in`, with the limits that `flash` holds, the notices of both, and what
 /// led to the last reset.
 #[inline]
-pub fn describe<F: Flash>(built_in: Board, flash: Option<&F>, ceilings: Ceilings, last_reset: &LastReset) -> Board {
+pub fn describe<F: Flash>(
+    built_in: Board,
+    flash: Option<&F>,
+    ceilings: CeilingPolicy,
+    last_reset: &LastReset,
+) -> Board {
     let (limits, notices) = load_limits(flash, LIMITS_SLOT, &built_in.limits, ceilings);
     let board = Board {
         limits,

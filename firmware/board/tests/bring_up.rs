@@ -11,7 +11,7 @@ use frixel_board::bring_up::{
 };
 use frixel_control::Board;
 use frixel_model::TouchBound;
-use frixel_session::store::{Ceilings, write_limits};
+use frixel_session::store::{CeilingPolicy, write_limits};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
@@ -261,7 +261,7 @@ impl Bench for TestBench {
     }
 
     fn may_store(&mut self, limits: &BoardLimits) -> bool {
-        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK && write_limits(limits, Ceilings::InForce).is_ok()
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK && write_limits(limits, CeilingPolicy::InForce).is_ok()
     }
 
     fn store(&mut self, limits: &BoardLimits) -> bool {
@@ -591,7 +591,7 @@ fn a_series_resistance_that_a_large_gain_would_make_too_small_stops_before_anyth
     for (series_ohm, is_taken) in [(44e3, false), (48e3, true)] {
         let behind = Board { limits: LIMITS, ..Board::NUCLEO_G474RE }.behind(series_ohm).limits;
         let limits = BoardLimits { voltage_max_v_peak: LIMITS.voltage_max_v_peak, ..behind };
-        assert!(write_limits(&limits, Ceilings::InForce).is_ok());
+        assert!(write_limits(&limits, CeilingPolicy::InForce).is_ok());
         let mut bench = TestBench { limits, ..TestBench::new() };
         let stops_at_once = bench.bring_up() == Some(Err(Stop::Limits)) && bench.events == [Event::Start];
         assert_eq!(stops_at_once, !is_taken, "{series_ohm}");

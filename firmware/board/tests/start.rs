@@ -3,7 +3,7 @@
 use frixel_board::fault::LastReset;
 use frixel_board::start::{describe, prepare};
 use frixel_control::Board as Description;
-use frixel_session::store::{Ceilings, Flash};
+use frixel_session::store::{CeilingPolicy, Flash};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{ResetCause, notice};
 
@@ -26,7 +26,7 @@ impl Flash for Filled {
 fn described(flash: Option<&Filled>) -> Description {
     let last_reset = LastReset { cause: ResetCause::Pin, fault: Some((Fault::Panic, 7)), text: b"main.rs" };
     let built_in = Description { notices: notice::OPTION_BYTES, ..BOARD };
-    describe(built_in, flash, Ceilings::InForce, &last_reset)
+    describe(built_in, flash, CeilingPolicy::InForce, &last_reset)
 }
 
 /// The watchdog would bite before the first tick feeds it.

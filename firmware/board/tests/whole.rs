@@ -8,7 +8,7 @@ use crate::support::firmware::{BOARD, BUILT_IN, Firmware};
 use crate::support::person::{self, EnablePath, Instruments};
 use frixel_board::bring_up::{Bench, Check, Drive, DriveError, Inputs, Line, Pressed, Reading, TestOutput, run};
 use frixel_control::{Sense, Status};
-use frixel_session::store::{Ceilings, write_limits};
+use frixel_session::store::{CeilingPolicy, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 /// What the board may store.
@@ -146,7 +146,7 @@ impl Bench for WholeBench {
     }
 
     fn may_store(&mut self, limits: &BoardLimits) -> bool {
-        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK && write_limits(limits, Ceilings::InForce).is_ok()
+        limits.voltage_max_v_peak <= MAY_STORE_V_PEAK && write_limits(limits, CeilingPolicy::InForce).is_ok()
     }
 
     fn store(&mut self, limits: &BoardLimits) -> bool {

@@ -5,7 +5,7 @@ use crate::support;
 
 use frixel_control::Board;
 use frixel_session::store::{
-    COPY_LEN, Ceilings, LIMITS_LEN, Slot, Writer, Writing, first_copy, load_limits, write_limits,
+    COPY_LEN, CeilingPolicy, LIMITS_LEN, Slot, Writer, Writing, first_copy, load_limits, write_limits,
 };
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardLimits, notice};
@@ -129,7 +129,7 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
         ..built_in
     };
     let (low, high) = (stored(150.0), stored(300.0));
-    let (in_force, lifted) = (Ceilings::InForce, Ceilings::Lifted);
+    let (in_force, lifted) = (CeilingPolicy::InForce, CeilingPolicy::Lifted);
     let (refused, above) = (notice::STORED_LIMITS_REFUSED, notice::LIMITS_ABOVE_CEILINGS);
     let load = |flash: &SimulatedFlash, ceilings| load_limits(Some(flash), SLOT, &built_in, ceilings);
 
@@ -164,7 +164,7 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
 #[test]
 fn bytes_of_another_layout_are_never_limits() {
     let built_in = Board::NUCLEO_G474RE.limits;
-    let mut copy = first_copy(&write_limits(&built_in, Ceilings::InForce).unwrap());
+    let mut copy = first_copy(&write_limits(&built_in, CeilingPolicy::InForce).unwrap());
     copy[3] += 1;
     for bytes in [&copy[..], b"another program's settings"] {
         for page in 0..PAGES {
@@ -172,7 +172,11 @@ fn bytes_of_another_layout_are_never_limits() {
             flash.bytes[page * PAGE_LEN..][..bytes.len()].copy_from_slice(bytes);
             let is_of_limits = (page as u32).wrapping_sub(SLOT.first_page) < 2;
             let notices = if is_of_limits { notice::STORED_LIMITS_REFUSED } else { 0 };
-            assert_eq!(load_limits(Some(&flash), SLOT, &built_in, Ceilings::InForce), (built_in, notices), "{page}");
+            assert_eq!(
+                load_limits(Some(&flash), SLOT, &built_in, CeilingPolicy::InForce),
+                (built_in, notices),
+                "{page}"
+            );
         }
     }
 }

@@ -47,14 +47,14 @@ const NUMBER_MAX: f32 = 1e9;
 
 /// Whether a firmware build bounds the stored limits by the ceilings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ceilings {
+pub enum CeilingPolicy {
     /// Limits above a ceiling are refused. What every board is built with unless its maker decides otherwise.
     InForce,
     /// Limits above the ceilings are stored and used, and the hello says so ([`notice::LIMITS_ABOVE_CEILINGS`]).
     Lifted,
 }
 
-impl Ceilings {
+impl CeilingPolicy {
     /// Version of the layout. It differs, so that a build takes no limits that a build of the other kind stored.
     const fn version(self) -> u32 {
         match self {
@@ -201,7 +201,7 @@ const fn check_edges(limits: &BoardLimits) -> Result<(), LimitsError> {
 }
 
 /// Writes the measured limits as bytes to store. Refuses limits that [`read_limits`] would refuse.
-pub fn write_limits(limits: &BoardLimits, ceilings: Ceilings) -> Result<[u8; LIMITS_LEN], LimitsError> {
+pub fn write_limits(limits: &BoardLimits, ceilings: CeilingPolicy) -> Result<[u8; LIMITS_LEN], LimitsError> {
     check(limits, ceilings)?;
     let mut bytes = [0; LIMITS_LEN];
     let numbers = measured(limits).map(f32::to_bits);
@@ -215,7 +215,7 @@ pub fn write_limits(limits: &BoardLimits, ceilings: Ceilings) -> Result<[u8; LIM
 pub fn read_limits(
     bytes: &[u8; LIMITS_LEN],
     limits: &BoardLimits,
-    ceilings: Ceilings,
+    ceilings: CeilingPolicy,
 ) -> Result<BoardLimits, LimitsError> {
     let (words, _) = bytes.as_chunks::<4>();
     let [version, numbers @ ..] = words else { return Err(LimitsError::Layout) };
@@ -249,7 +249,7 @@ pub fn load_limits<F: Flash>(
     flash: Option<&F>,
     slot: Slot,
     built_in: &BoardLimits,
-    ceilings: Ceilings,
+    ceilings: CeilingPolicy,
 ) -> (BoardLimits, u8) {
     let stored = flash.and_then(|flash| slot.find(flash));
     match stored.map(|bytes| read_limits(&bytes, built_in, ceilings)) {
@@ -259,14 +259,14 @@ pub fn load_limits<F: Flash>(
     }
 }
 
-fn check(limits: &BoardLimits, ceilings: Ceilings) -> Result<(), LimitsError> {
+fn check(limits: &BoardLimits, ceilings: CeilingPolicy) -> Result<(), LimitsError> {
     let is_plausible = measured(limits).iter().all(|number| *number > 0.0 && *number < NUMBER_MAX)
         && limits.voltage_max_v_peak <= limits.full_scale_v_peak
         && limits.voltage_max_v_peak <= VOLTAGE_MAX_V_PEAK;
     match ceilings {
         _ if !is_plausible => Err(LimitsError::Implausible),
-        Ceilings::InForce => check_touched_board(limits),
-        Ceilings::Lifted => check_edges(limits),
+        CeilingPolicy::InForce => check_touched_board(limits),
+        CeilingPolicy::Lifted => check_edges(limits),
     }
 }
 
@@ -301,7 +301,7 @@ mod tests {
 
     #[test]
     fn limits_come_back_as_they_were() {
-        for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+        for ceilings in [CeilingPolicy::InForce, CeilingPolicy::Lifted] {
             let bytes = write_limits(&MEASURED, ceilings).unwrap();
             assert_eq!(read_limits(&bytes, &DEFAULTS, ceilings), Ok(MEASURED));
         }
@@ -314,7 +314,7 @@ mod tests {
             .as_chunks_mut()
             .0
             .iter_mut()
-            .zip([Ceilings::InForce.version()].into_iter().chain(measured(limits).map(f32::to_bits)))
+            .zip([CeilingPolicy::InForce.version()].into_iter().chain(measured(limits).map(f32::to_bits)))
         {
             *to = from.to_le_bytes();
         }
@@ -332,10 +332,10 @@ mod tests {
             BoardLimits { electrode_capacitance_max_f: -1e-9, ..MEASURED },
             BoardLimits { current_max_a_rms: f32::NAN, ..MEASURED },
         ] {
-            for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+            for ceilings in [CeilingPolicy::InForce, CeilingPolicy::Lifted] {
                 assert_eq!(write_limits(&limits, ceilings), Err(LimitsError::Implausible), "{limits:?}");
             }
-            let read = read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce);
+            let read = read_limits(&forged(&limits), &DEFAULTS, CeilingPolicy::InForce);
             assert_eq!(read, Err(LimitsError::Implausible), "{limits:?}");
         }
     }
@@ -349,11 +349,11 @@ mod tests {
             (BoardLimits { current_max_a_rms: rms, ..MEASURED }, LimitsError::CurrentRms { found: rms }),
             (BoardLimits { current_max_a_peak: peak, ..MEASURED }, LimitsError::CurrentPeak { found: peak }),
         ] {
-            assert_eq!(write_limits(&limits, Ceilings::InForce), Err(error));
-            assert_eq!(read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce), Err(error));
+            assert_eq!(write_limits(&limits, CeilingPolicy::InForce), Err(error));
+            assert_eq!(read_limits(&forged(&limits), &DEFAULTS, CeilingPolicy::InForce), Err(error));
             assert!(error.to_string().contains("ceiling"), "{error}");
-            let bytes = write_limits(&limits, Ceilings::Lifted).unwrap();
-            assert_eq!(read_limits(&bytes, &DEFAULTS, Ceilings::Lifted), Ok(limits));
+            let bytes = write_limits(&limits, CeilingPolicy::Lifted).unwrap();
+            assert_eq!(read_limits(&bytes, &DEFAULTS, CeilingPolicy::Lifted), Ok(limits));
         }
         // As bring-up computes them from numbers in mA.
         let at_the_ceilings = BoardLimits {
@@ -362,17 +362,17 @@ mod tests {
             current_max_a_peak: 5.0 * 1e-3,
             ..MEASURED
         };
-        assert!(write_limits(&at_the_ceilings, Ceilings::InForce).is_ok());
+        assert!(write_limits(&at_the_ceilings, CeilingPolicy::InForce).is_ok());
     }
 
     #[test]
     fn limits_of_a_board_with_another_series_resistance_are_not_taken() {
-        let stored = write_limits(&DEFAULTS, Ceilings::InForce).unwrap();
+        let stored = write_limits(&DEFAULTS, CeilingPolicy::InForce).unwrap();
         for (series_ohm, is_taken) in
             [(67e3, false), (67.5e3, true), (68.5e3, true), (69e3, false), (75e3, false), (370e3, false)]
         {
             let built_in = Board::NUCLEO_G474RE.behind(series_ohm).limits;
-            let read = read_limits(&stored, &built_in, Ceilings::InForce);
+            let read = read_limits(&stored, &built_in, CeilingPolicy::InForce);
             assert_eq!(read.is_ok(), is_taken, "{series_ohm}: {read:?}");
             let error = LimitsError::SeriesResistance { found_ohm: 68e3, built_in_ohm: series_ohm };
             assert!(is_taken || read == Err(error), "{series_ohm}: {read:?}");
@@ -396,14 +396,14 @@ mod tests {
                 electrode_capacitance_max_f: 1e-9 * electrode_nf,
                 ..DEFAULTS
             };
-            let read = read_limits(&forged(&limits), &DEFAULTS, Ceilings::InForce);
-            for ceilings in [Ceilings::InForce, Ceilings::Lifted] {
+            let read = read_limits(&forged(&limits), &DEFAULTS, CeilingPolicy::InForce);
+            for ceilings in [CeilingPolicy::InForce, CeilingPolicy::Lifted] {
                 assert_eq!(write_limits(&limits, ceilings).is_ok(), is_taken, "{edges_us} us, {electrode_nf} nF");
             }
             assert!(is_taken && read.is_ok() || matches!(read, Err(LimitsError::Edges { .. })), "{read:?}");
         }
         let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..DEFAULTS };
-        assert_eq!(write_limits(&untouched, Ceilings::InForce), Err(LimitsError::Implausible));
+        assert_eq!(write_limits(&untouched, CeilingPolicy::InForce), Err(LimitsError::Implausible));
         assert!(check_touched_board(&untouched).is_err());
     }
 
@@ -419,7 +419,7 @@ mod tests {
 
     #[test]
     fn limits_of_a_build_with_other_ceilings_are_not_taken() {
-        let (in_force, lifted) = (Ceilings::InForce, Ceilings::Lifted);
+        let (in_force, lifted) = (CeilingPolicy::InForce, CeilingPolicy::Lifted);
         for (written, read) in [(in_force, lifted), (lifted, in_force)] {
             let bytes = write_limits(&MEASURED, written).unwrap();
             assert_eq!(read_limits(&bytes, &DEFAULTS, read), Err(LimitsError::Layout));

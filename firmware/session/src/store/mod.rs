@@ -10,8 +10,8 @@ mod limits;
 mod slot;
 
 pub use limits::{
-    CURRENT_CEILING_A_PEAK, CURRENT_CEILING_A_RMS, Ceilings, LIMITS_LEN, LimitsError, RAIL_MAX, VOLTAGE_CEILING_V_PEAK,
-    check_touched_board, load_limits, read_limits, write_limits,
+    CURRENT_CEILING_A_PEAK, CURRENT_CEILING_A_RMS, CeilingPolicy, LIMITS_LEN, LimitsError, RAIL_MAX,
+    VOLTAGE_CEILING_V_PEAK, check_touched_board, load_limits, read_limits, write_limits,
 };
 pub use slot::{COPY_LEN, Slot, Writer, Writing, first_copy};
 

@@ -1,13 +1,13 @@
 //! The limits in the flash of a board that was brought up, as an image for bring-up would have stored them.
 
-use frixel_session::store::{COPY_LEN, Ceilings, first_copy, write_limits};
+use frixel_session::store::{COPY_LEN, CeilingPolicy, first_copy, write_limits};
 use frixel_wire::hello::BoardLimits;
 
 use crate::emulated::EmulatorError;
 
 /// The bytes of the flash that hold the limits, a byte a word.
 pub(super) fn stored(limits: &BoardLimits) -> Result<[u32; COPY_LEN], EmulatorError> {
-    let bytes = write_limits(limits, Ceilings::InForce)
+    let bytes = write_limits(limits, CeilingPolicy::InForce)
         .map_err(|error| EmulatorError::LimitsNotStored { reason: error.to_string() })?;
     Ok(first_copy(&bytes).map(u32::from))
 }

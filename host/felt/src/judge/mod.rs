@@ -14,6 +14,7 @@ mod alike;
 mod border;
 mod element;
 mod fingertip;
+mod layer_verdict;
 mod likeness;
 mod measure;
 mod moment;
@@ -28,18 +29,19 @@ mod touch;
 mod way;
 
 use std::cmp::Ordering;
-use std::ops::ControlFlow;
 
 use frixel_hil_sim::Stroke;
 use frixel_layers::{Layer, Stream};
+use frixel_scene::Program;
 use frixel_scene::reference::Reference;
-use frixel_scene::{LayerTitle, Program};
-use serde::Serialize;
 
+use crate::GoesOn;
 use crate::fidelity::FidelitySample;
 pub use alike::AlikeLayers;
 use element::SPEEDS_M_PER_S;
 pub use element::{Element, strokes};
+use layer_verdict::SceneFeel;
+pub use layer_verdict::{Judgement, LayerVerdict};
 pub use measure::changes_along;
 use measure::{Measure, Measured};
 use moment::Moment;
@@ -55,73 +57,6 @@ pub use thresholds::{
 
 /// Samples a second of the friction along a stroke: four times the highest frequency with a threshold.
 pub(crate) const SAMPLE_HZ: f64 = 2000.0;
-
-/// What a person will feel of a program.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Judgement {
-    /// The layers that are visible somewhere, from bottom to top.
-    pub layers: Vec<LayerVerdict>,
-    /// Layers that a person cannot tell apart by their strength.
-    pub alike: Vec<AlikeLayers>,
-    /// What only a sliding finger feels, and other notes, a sentence each.
-    pub notes: Vec<String>,
-}
-
-/// What a person will feel of a layer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LayerVerdict {
-    /// The layer's number and title.
-    pub layer: LayerTitle,
-    /// Whether a person feels the layer: the surest of contrast, texture, border and click, at the best of the speeds.
-    pub verdict: Verdict,
-    /// The best of the speeds, mm/s; absent where friction depends on the speed, in one play of any speed, or where
-    /// nothing was played.
-    pub speed_mm_per_s: Option<f64>,
-    /// Why it is not surely felt, or felt otherwise than it is written.
-    pub reasons: Vec<Reason>,
-    /// What would be felt instead; absent where nothing was sought.
-    pub advice: Option<String>,
-    /// What the contrast is a change with.
-    pub over: Over,
-    /// The felt contrast within the layer, on ways of at most 50 mm: from the 5th to the 95th percentile, or from the
-    /// least to the largest friction of an edge, or if [`Self::is_narrow`]. Over speed, from the friction at 20 mm/s to
-    /// that at 100 mm/s; over the direction, between a slide and the slide back; of a stream, from its lowest to its
-    /// highest sample.
-    pub contrast: Step,
-    /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
-    pub is_narrow: bool,
-    /// The most noticeable texture; absent where there is none.
-    pub texture: Option<Texture>,
-    /// The border of the layer that is felt most surely, as a step onto it; absent for a layer without any.
-    pub border: Option<BorderStep>,
-    /// The bursts of a vibration, during which contrast and texture hold; absent if they hold all the time.
-    pub burst: Option<BurstTimes>,
-    /// The step with which the layer's click begins.
-    pub click: Option<Step>,
-    /// Whether the drive cannot give all of the click.
-    pub is_click_cut_off: bool,
-    /// Mean friction inside of the layer where no other one is above; absent for narrow layers.
-    #[serde(skip)]
-    pub level: Option<Level>,
-    /// Whether the scene has the same friction throughout the layer.
-    #[serde(skip)]
-    pub is_flat: bool,
-    /// What layers are compared by.
-    #[serde(skip)]
-    scene: SceneFeel,
-}
-
-/// What a display without fault gives of a layer, to the finger that the scene is meant for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct SceneFeel {
-    /// Index of the layer from the bottom.
-    layer: usize,
-    contrast: Step,
-    /// At 50 mm/s.
-    texture: Option<Texture>,
-    /// The layers that act where the layer does, a bit each.
-    visible: u64,
-}
 
 /// How a judgement is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,11 +138,7 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
 /// touch source. An element is left out if the finger never slid on it while the board drove the scene. So is one whose
 /// friction depends on the speed, since one play has no second speed to compare with. `goes_on` is asked before each
 /// element; when it breaks, there is no judgement.
-pub fn in_play(
-    program: &Program,
-    samples: &[FidelitySample],
-    goes_on: &dyn Fn() -> ControlFlow<()>,
-) -> Option<Vec<LayerVerdict>> {
+pub fn in_play(program: &Program, samples: &[FidelitySample], goes_on: GoesOn<'_>) -> Option<Vec<LayerVerdict>> {
     let slides = |speed_m_per_s: f64| speed_m_per_s >= SLIDE_MIN_M_PER_S;
     let sliding = |sample: &FidelitySample| FidelitySample {
         is_driven: sample.is_driven && sample.speed_m_per_s.is_some_and(slides),
@@ -270,8 +201,8 @@ fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
 /// A slower finger rests, as for the board, m/s: friction does not follow the scene before it slides.
 const SLIDE_MIN_M_PER_S: f64 = 2e-3;
 
-/// A contrast of the scene below it, in Weber steps, is that of a flat layer.
-const FLAT_WEBER_STEPS: f64 = 0.1;
+/// Smallest difference of two levels of friction in a scene that is not treated as flat, in Weber steps.
+pub const FLAT_WEBER_STEPS: f64 = 0.1;
 
 /// What was felt of an element in one play, and what a display without fault would have given.
 #[derive(Clone, Copy)]
@@ -334,39 +265,10 @@ impl Element {
     }
 }
 
-impl LayerVerdict {
-    /// A layer of which nothing but a contrast is known.
-    fn new(element: &Element, contrast: Step, over: Over) -> Self {
-        Self {
-            layer: element.title.clone(),
-            verdict: contrast.verdict,
-            speed_mm_per_s: None,
-            reasons: Vec::new(),
-            advice: None,
-            over,
-            contrast,
-            is_narrow: false,
-            texture: None,
-            border: None,
-            burst: element.burst.map(|burst| BurstTimes {
-                on_ms: 1e3 * f64::from(burst.on_s),
-                period_ms: 1e3 * f64::from(burst.period_s),
-            }),
-            click: None,
-            is_click_cut_off: false,
-            level: None,
-            is_flat: false,
-            scene: SceneFeel { layer: element.layer, contrast, texture: None, visible: 1 << element.layer },
-        }
-    }
-
-    /// The same of a copy of the layer.
-    fn of_copy(&self, copy: &Element) -> Self {
-        let visible = self.scene.visible & !(1 << self.scene.layer) | 1 << copy.layer;
-        let scene = SceneFeel { layer: copy.layer, visible, ..self.scene };
-        let border = self.border.clone().map(|border| BorderStep { to: Some(copy.title.clone()), ..border });
-        Self { layer: copy.title.clone(), border, scene, ..self.clone() }
-    }
+/// The larger of the largest step and the texture, each as a part of what is surely felt.
+pub fn felt_size(largest_weber_steps: f64, texture: Option<Texture>) -> f64 {
+    let step = largest_weber_steps / weber_steps_safe();
+    step.max(texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY))
 }
 
 impl Measured {
@@ -384,8 +286,7 @@ impl Measured {
     /// Orders by how surely something is felt, and then by its size.
     fn cmp_felt(&self, other: &Self) -> Ordering {
         let size = |measured: &Self| {
-            let step = measured.steps().map(|step| step.weber_steps.abs()).fold(0.0, f64::max) / weber_steps_safe();
-            step.max(measured.texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY))
+            felt_size(measured.steps().map(|step| step.weber_steps.abs()).fold(0.0, f64::max), measured.texture)
         };
         let by_verdict = self.verdict().sureness().cmp(&other.verdict().sureness());
         by_verdict.then(size(self).total_cmp(&size(other)))

@@ -8,6 +8,7 @@ use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
 use super::{Advice, Judgement, LayerVerdict, Reason, Verdict, in_play, judge};
+use crate::TO_THE_END;
 use crate::check::feel;
 use crate::fidelity::{FidelitySample, SAMPLE_HZ};
 use crate::tests::compiled;
@@ -221,7 +222,7 @@ fn a_play_is_judged_by_its_own_strokes() {
     let stroke = Stroke::constant_speed(Point { x_m: 0.03, y_m: 0.03 }, Point { x_m: 0.075, y_m: 0.03 }, 0.07).unwrap();
     let layers = |display: Display, left: &str| {
         let program = plates(left);
-        in_play(&program, &display.play(&program, &stroke), &|| ControlFlow::Continue(())).unwrap()
+        in_play(&program, &display.play(&program, &stroke), TO_THE_END).unwrap()
     };
     let verdicts = |layers: Vec<LayerVerdict>| -> Vec<(String, Verdict)> {
         layers.into_iter().map(|found| (found.layer.to_string(), found.verdict)).collect()
@@ -237,10 +238,6 @@ fn a_play_is_judged_by_its_own_strokes() {
         .iter()
         .map(|sample| FidelitySample { speed_m_per_s: Some(0.0), natural_n: 0.0, ..*sample })
         .collect();
-    assert_eq!(
-        in_play(&program, &still, &|| ControlFlow::Continue(())),
-        Some(vec![]),
-        "a finger that rests feels nothing"
-    );
+    assert_eq!(in_play(&program, &still, TO_THE_END), Some(vec![]), "a finger that rests feels nothing");
     assert_eq!(in_play(&program, &FAULTLESS.play(&program, &stroke), &|| ControlFlow::Break(())), None);
 }

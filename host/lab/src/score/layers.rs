@@ -3,15 +3,12 @@
 use std::cmp::Ordering;
 
 use frixel_felt::judge::{
-    Judgement, LayerVerdict, Level, Step, THRESHOLD_UNCERTAINTY, Texture, Verdict, weber_steps, weber_steps_safe,
+    FLAT_WEBER_STEPS, Judgement, LayerVerdict, Level, Step, Texture, Verdict, felt_size, weber_steps,
 };
 use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
 use crate::statistics::{mean, median};
-
-/// Levels of friction that differ by less in the scene, in Weber steps, are the same.
-const SAME_WEBER_STEPS: f64 = 0.1;
 
 /// The simulated fingers that touched something, by their verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -141,8 +138,7 @@ impl LayerScore {
     fn size(&self) -> f64 {
         let Self { contrast_weber_steps, border, texture, .. } = self;
         let step = border.as_ref().map_or(0.0, |border| border.weber_steps.abs());
-        let texture = texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY);
-        (contrast_weber_steps.abs().max(step) / weber_steps_safe()).max(texture)
+        felt_size(contrast_weber_steps.abs().max(step), *texture)
     }
 
     /// The layer that is noticed the least surely: of copies, it stands for all of them.
@@ -175,7 +171,7 @@ pub(super) fn levels(program: &Program, fingers: &[Judgement]) -> Vec<LevelScore
         program.titles.iter().filter_map(|title| Some((title, scene_n(title)?))).collect();
     flat.sort_by(|(_, one_n), (_, other_n)| one_n.total_cmp(other_n));
     let are_same = |(_, one_n): &(&LayerTitle, f64), (_, other_n): &(&LayerTitle, f64)| {
-        weber_steps(*one_n, *other_n) < SAME_WEBER_STEPS
+        weber_steps(*one_n, *other_n) < FLAT_WEBER_STEPS
     };
     let groups = flat.chunk_by(are_same);
     let groups: Vec<Vec<&LayerTitle>> = groups.map(|group| group.iter().map(|(title, _)| *title).collect()).collect();

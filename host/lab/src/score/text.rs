@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt::Write;
 
-use frixel_felt::judge::weber_steps_text;
+use frixel_felt::judge::{FLAT_WEBER_STEPS, weber_steps_text};
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::metric::{METRICS, Metric};
@@ -13,8 +13,6 @@ use super::{Goal, LayerBorder, LayerScore, LevelScore, MetricScore, Score, Verdi
 const LAYER_LINES_MAX: usize = 10;
 /// Most lines about levels.
 const LEVEL_LINES_MAX: usize = 4;
-/// A smaller contrast, in Weber steps, is that of a flat layer, of which a step or a texture says more.
-const CONTRAST_MIN_WEBER_STEPS: f64 = 0.1;
 /// Most characters of a line's first column.
 const NAME_WIDTH: usize = 30;
 
@@ -153,7 +151,7 @@ fn side(border: &LayerBorder) -> &str {
 /// How many fingers notice a layer, and of what size it is for the one in the middle.
 fn layer_text(layer: &LayerScore) -> String {
     let LayerScore { simulated_fingers, contrast_weber_steps, texture, border, .. } = layer;
-    let is_flat = contrast_weber_steps.abs() < CONTRAST_MIN_WEBER_STEPS && (border.is_some() || texture.is_some());
+    let is_flat = contrast_weber_steps.abs() < FLAT_WEBER_STEPS && (border.is_some() || texture.is_some());
     let contrast = (!is_flat).then(|| format!("contrast {} Weber steps", weber_steps_text(*contrast_weber_steps)));
     let unit = if is_flat { " Weber steps" } else { "" };
     let border = border

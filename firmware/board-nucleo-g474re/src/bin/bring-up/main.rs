@@ -20,7 +20,7 @@ use defmt_rtt as _;
 use frixel_board::bring_up::{self, Injection, TestOutput};
 use frixel_control::Board;
 use frixel_drivers::fault_record::Text;
-use frixel_session::store::Ceilings;
+use frixel_session::store::CeilingPolicy;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::{FAULT_TEXT_MAX_LEN, Refusal};
 
@@ -53,7 +53,7 @@ fn main() -> ! {
         let text = str::from_utf8(last_reset.text).unwrap_or_default();
         terminal.say(format_args!("The last start ended in {fault} ({text})"));
     }
-    if matches!(CEILINGS, Ceilings::Lifted) {
+    if matches!(CEILINGS, CeilingPolicy::Lifted) {
         terminal.say(format_args!("This build stores limits above the ceilings: nobody may touch this board."));
     }
     if !flash::option_bytes_are_right() {
