@@ -94,9 +94,9 @@ fn look_ups(text: &str, table: &FixedTable<4>) -> Vec<(U0F32, U1F31)> {
 fn worst(contact: &LoadedContact<f64>, table: &FixedTable<4>, look_ups: &[(U0F32, U1F31)], factor: f64) -> f64 {
     let least = table.friction(contact.electric_friction_n(VOLTAGE_MIN_V_RMS));
     let error = |(friction, voltage): &(U0F32, U1F31)| {
-        let wanted_n = friction.to_num::<f64>() * table.friction_max_n();
+        let reference_n = friction.to_num::<f64>() * table.friction_max_n();
         let voltage_v_rms = factor * voltage.to_num::<f64>() * table.voltage_max_v_rms();
-        (contact.electric_friction_n(voltage_v_rms) / wanted_n - 1.0).abs()
+        (contact.electric_friction_n(voltage_v_rms) / reference_n - 1.0).abs()
     };
     look_ups.iter().filter(|(friction, _)| *friction > least).map(error).fold(0.0, f64::max)
 }

@@ -144,8 +144,8 @@ fn swap(before: &[u8], after: &[u8], delay: usize) -> Swap {
     Swap { swap, before: run(before, None), after: run(after, None), swapped }
 }
 
-fn asked_bits(records: &[RigTick<Status>]) -> Vec<u32> {
-    records.iter().map(|record| record.status.telemetry.asked_electric_friction_n.to_bits()).collect()
+fn commanded_bits(records: &[RigTick<Status>]) -> Vec<u32> {
+    records.iter().map(|record| record.status.telemetry.commanded_electric_friction_n.to_bits()).collect()
 }
 
 fn amplitudes(records: &[RigTick<Status>]) -> Vec<u16> {
@@ -161,18 +161,18 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
         let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
         // The commit advances by a step a tick: 20 for these scenes.
         assert!((1_000..1_040).contains(&swap), "{swap}");
-        assert_eq!(asked_bits(&swapped[..swap]), asked_bits(&before[..swap]), "delay {delay}");
+        assert_eq!(commanded_bits(&swapped[..swap]), commanded_bits(&before[..swap]), "delay {delay}");
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
-        let asked_n = |record: &RigTick<Status>| record.status.telemetry.asked_electric_friction_n;
+        let commanded_n = |record: &RigTick<Status>| record.status.telemetry.commanded_electric_friction_n;
         for tick in swap..SWAP_TICKS {
-            let (found_n, expected_n) = (asked_n(&swapped[tick]), asked_n(&after[tick]));
+            let (found_n, expected_n) = (commanded_n(&swapped[tick]), commanded_n(&after[tick]));
             // A tick applies one order: the tick that swaps the scene may apply a new track one tick late.
             let tolerance_n = if tick == swap { 1e-6 } else { 0.0 };
             assert!((found_n - expected_n).abs() <= tolerance_n, "{delay}, {tick}: {found_n} N is not {expected_n} N");
             let (found, expected) = (amplitude(&swapped[tick]), amplitude(&after[tick]));
             assert!(found.abs_diff(expected) < 40, "{delay}, {tick}: code {found} is not {expected}");
             if tick < swap + 4 {
-                assert!((found_n - asked_n(&before[tick])).abs() > 5e-4, "the two differ");
+                assert!((found_n - commanded_n(&before[tick])).abs() > 5e-4, "the two differ");
                 assert!(found.abs_diff(amplitude(&before[tick])) > 400, "the two differ");
             }
         }

@@ -40,7 +40,7 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
         let contact = header.friction_law().unwrap();
         let reach_n = contact.electric_friction_n(150.0);
         for part in [0.1, 0.5, 0.95] {
-            let wanted_n = contact.natural_friction_n() + part * reach_n;
+            let reference_n = contact.natural_friction_n() + part * reach_n;
             let mut script = playing(&header, (part * reach_n) as f32);
             let records: Vec<RigTick<Status>> = (0..39_000).map(|_| script.step()).collect();
             // A sine's pressure swings about its mean, and friction grows a little faster than pressure; under this law
@@ -48,7 +48,7 @@ fn a_constant_friction_is_felt_within_one_per_cent_of_what_can_be_reached() {
             let is_even = waveform == Waveform::Square && law.is_none();
             let bound = if is_even { 0.01 } else { 0.03 };
             for felt_n in felt_means_n(&records) {
-                let error = (felt_n - wanted_n) / reach_n;
+                let error = (felt_n - reference_n) / reach_n;
                 assert!(error.abs() <= bound, "{waveform:?} at {part} of the range: {error}");
             }
         }

@@ -135,26 +135,25 @@ fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
     for (normal_load_n, voltage_max_v_rms) in [(0.0, 0.3), (0.0, 150.0), (0.5, 150.0), (0.5, 200.0)] {
         let contact = contact(normal_load_n);
         let whole = InverseTable::build(&contact, voltage_max_v_rms).unwrap();
-        let rows =
-            |asked_max_n| InverseTable::build_up_to(&contact, voltage_max_v_rms, asked_max_n).unwrap().rows_filled();
+        let rows = |up_to_n| InverseTable::build_up_to(&contact, voltage_max_v_rms, up_to_n).unwrap().rows_filled();
         let largest_n = whole.electric_friction_max_n();
         let knee_n = contact.electric_friction_n((voltage_max_v_rms / 200.0).min(1.0)) as f32;
         let mut fewest = usize::MAX;
-        for asked_max_n in [2.0, 1.0, 0.999, 0.8, 0.3, 1e-3, 1e-9, 0.0, -1.0].map(|part| part * largest_n) {
-            let table = InverseTable::build_up_to(&contact, voltage_max_v_rms, asked_max_n).unwrap();
+        for up_to_n in [2.0, 1.0, 0.999, 0.8, 0.3, 1e-3, 1e-9, 0.0, -1.0].map(|part| part * largest_n) {
+            let table = InverseTable::build_up_to(&contact, voltage_max_v_rms, up_to_n).unwrap();
             let end_n = table.electric_friction_max_n();
-            assert!(end_n >= asked_max_n.min(largest_n) && end_n <= largest_n);
+            assert!(end_n >= up_to_n.min(largest_n) && end_n <= largest_n);
             // No row is wider than a quarter of the friction at its start.
-            assert!(end_n <= 1.26 * asked_max_n.max(knee_n), "{asked_max_n:e} ends at {end_n:e}");
+            assert!(end_n <= 1.26 * up_to_n.max(knee_n), "{up_to_n:e} ends at {end_n:e}");
             let frictions = (0..=u32::MAX).step_by(100_003).map(f32::from_bits);
-            for x in frictions.chain([asked_max_n, end_n, end_n.next_up(), f32::NAN, f32::INFINITY]) {
+            for x in frictions.chain([up_to_n, end_n, end_n.next_up(), f32::NAN, f32::INFINITY]) {
                 let expected = if x > end_n { table.voltage_max_v_rms() } else { whole.voltage_v_rms(x) };
-                assert_eq!(table.voltage_v_rms(x).to_bits(), expected.to_bits(), "{x:e} of {asked_max_n:e}");
+                assert_eq!(table.voltage_v_rms(x).to_bits(), expected.to_bits(), "{x:e} of {up_to_n:e}");
             }
             let at_end_v_rms = f64::from(table.voltage_v_rms(end_n));
             assert!((at_end_v_rms / f64::from(table.voltage_max_v_rms()) - 1.0).abs() < BOUND);
-            assert!(rows(asked_max_n) <= fewest);
-            fewest = rows(asked_max_n);
+            assert!(rows(up_to_n) <= fewest);
+            fewest = rows(up_to_n);
         }
         assert_eq!(fewest, 1);
         assert_eq!(rows(f32::NAN), rows(f32::INFINITY));

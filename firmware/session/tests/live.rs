@@ -44,17 +44,17 @@ fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number()
         assert_eq!((refusal.found.to_bits(), refusal.layer), (gain.to_bits(), 1));
     }
     board.slide(100);
-    let asked_n = board.status().telemetry.asked_electric_friction_n;
-    assert!((asked_n - 0.02).abs() < 1e-7, "what was refused changed nothing: {asked_n}");
+    let commanded_n = board.status().telemetry.commanded_electric_friction_n;
+    assert!((commanded_n - 0.02).abs() < 1e-7, "what was refused changed nothing: {commanded_n}");
     board.command(Command::SetLayer { layer: 0, on: false, gain: 1.0 }).unwrap();
     board.command(Command::SetLayer { layer: 1, on: true, gain: 0.3 }).unwrap();
     board.slide(100);
-    let asked_n = board.status().telemetry.asked_electric_friction_n;
-    assert!((asked_n - 0.003).abs() < 1e-7, "{asked_n}");
+    let commanded_n = board.status().telemetry.commanded_electric_friction_n;
+    assert!((commanded_n - 0.003).abs() < 1e-7, "{commanded_n}");
     board.load(&both).unwrap();
     board.slide(100);
-    let asked_n = board.status().telemetry.asked_electric_friction_n;
-    assert!((asked_n - 0.02).abs() < 1e-7, "a commit gives each layer what its record says: {asked_n}");
+    let commanded_n = board.status().telemetry.commanded_electric_friction_n;
+    assert!((commanded_n - 0.02).abs() < 1e-7, "a commit gives each layer what its record says: {commanded_n}");
 }
 
 #[test]

@@ -450,8 +450,8 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
     assert_eq!(board.upload_bitmap(330, 100, &third), Ok(Accepted::Done));
     board.play(&scene(&HEADER, &[record(bitmap(bitmap_crc32(300, 100, &second)))]));
     board.slide(800);
-    let asked_n = board.status().telemetry.asked_electric_friction_n;
-    assert!((asked_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {asked_n}");
+    let commanded_n = board.status().telemetry.commanded_electric_friction_n;
+    assert!((commanded_n - 0.02 * 2.0 / 255.0).abs() < 1e-9, "the bitmap that stayed was moved whole: {commanded_n}");
 }
 
 #[cfg(feature = "bitmap")]

@@ -36,7 +36,7 @@ fn cut_header(random: &RandomScene) -> Header {
 /// What a board made of a scene at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Played {
-    asked_bits: u32,
+    commanded_bits: u32,
     dac_code: i16,
     flags: Flags,
 }
@@ -63,7 +63,11 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
             board.touch = finger.tick();
             let dac_code = board.tick().dac_code.bits();
             let telemetry = board.status().telemetry;
-            Played { asked_bits: telemetry.asked_electric_friction_n.to_bits(), dac_code, flags: telemetry.flags }
+            Played {
+                commanded_bits: telemetry.commanded_electric_friction_n.to_bits(),
+                dac_code,
+                flags: telemetry.flags,
+            }
         })
         .collect()
 }

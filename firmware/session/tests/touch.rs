@@ -227,16 +227,16 @@ fn without_a_report_for_40_ms_no_board_drives() {
 fn friction_falls_before_touch_data_is_stale() {
     let mut board = playing();
     board.touch = Some(report(4 * REPORT_TICKS));
-    let asked_n = |board: &TestBoard| board.status().telemetry.asked_electric_friction_n;
+    let commanded_n = |board: &TestBoard| board.status().telemetry.commanded_electric_friction_n;
     let is_stale = |board: &TestBoard| board.status().telemetry.flags.contains(Flags::TOUCH_STALE);
     board.ticks(3 * REPORT_TICKS);
-    assert!((asked_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
+    assert!((commanded_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
     board.ticks(REPORT_TICKS / 2);
-    assert!((asked_n(&board) - 0.01).abs() < 1e-4 && is_stale(&board), "{}", asked_n(&board));
+    assert!((commanded_n(&board) - 0.01).abs() < 1e-4 && is_stale(&board), "{}", commanded_n(&board));
     assert!(!board.status().telemetry.flags.contains(Flags::NO_FINGER));
     board.touch = Some(report(7 * REPORT_TICKS + REPORT_TICKS / 2));
     assert!((0..REPORT_TICKS).all(|_| board.tick() != OFF));
-    assert!((asked_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
+    assert!((commanded_n(&board) - 0.02).abs() < 1e-6 && !is_stale(&board));
 }
 
 #[test]

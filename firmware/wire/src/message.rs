@@ -236,7 +236,7 @@ pub struct Telemetry {
     /// Estimated sliding speed, m/s.
     pub speed_m_per_s: f32,
     /// Target electric friction, the friction above the natural one: the input of the inverse model, N.
-    pub asked_electric_friction_n: f32,
+    pub commanded_electric_friction_n: f32,
     /// Rms voltage of the envelope, V.
     pub voltage_v_rms: f32,
     /// Code written to the DAC.

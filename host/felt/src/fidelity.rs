@@ -90,7 +90,7 @@ impl FidelitySample {
             x_m: 1e-3 * row.x_mm.unwrap_or(0.0),
             y_m: 1e-3 * row.y_mm.unwrap_or(0.0),
             speed_m_per_s: row.speed_mm_s.filter(|_| row.is_tracked).map(|speed_mm_s| 1e-3 * speed_mm_s),
-            reference_n: row.wanted_n.unwrap_or(0.0),
+            reference_n: row.reference_n.unwrap_or(0.0),
             felt_n: row.felt_n.unwrap_or(0.0),
             natural_n: row.natural_n.unwrap_or(0.0),
             is_driven: row.flags.is_some_and(|flags| !OFF.into_iter().any(|off| flags.contains(off))),

@@ -26,11 +26,11 @@ pub struct Sample {
     /// Whether the board knows of a finger; absent if the board did not report.
     pub board_has_finger: Option<bool>,
     /// The reference friction at the finger's place.
-    pub wanted_n: Option<f64>,
+    pub reference_n: Option<f64>,
     /// Whether the finger has just landed or turned, so that its skin does not yet pull against its motion.
     pub turning: bool,
     /// The board's target, the input of its inverse.
-    pub asked_n: Option<f64>,
+    pub commanded_n: Option<f64>,
     /// The friction that the finger felt.
     pub felt_n: Option<f64>,
     /// The friction that the full model gives for the commanded rms voltage, the DAC's step included, through an ideal
@@ -61,7 +61,7 @@ pub struct Metrics {
     inversion_error: Spread,
     load_mismatch: Spread,
     carrier_ripple: Spread,
-    wanted_range_n: Option<(f64, f64)>,
+    reference_range_n: Option<(f64, f64)>,
 }
 
 /// The errors of a play. A number is absent if no sample counted, or if it needs ticks that were not observed.
@@ -87,7 +87,7 @@ pub struct MetricsSummary {
     pub carrier_ripple_rms_n: Option<f64>,
     /// Least and largest reference friction under the finger, in total, N, but for the micrometres after it lands or
     /// turns.
-    pub wanted_range_n: Option<(f64, f64)>,
+    pub reference_range_n: Option<(f64, f64)>,
 }
 
 /// The size of an error.
@@ -116,7 +116,7 @@ impl Metrics {
             inversion_error: Spread::default(),
             load_mismatch: Spread::default(),
             carrier_ripple: Spread::default(),
-            wanted_range_n: None,
+            reference_range_n: None,
         }
     }
 
@@ -141,13 +141,14 @@ impl Metrics {
         self.finger_down_samples += 1;
         self.is_reported |= sample.board_has_finger == Some(true);
         self.unreported_samples += u64::from(!self.is_reported);
-        let errors = sample.felt_n.zip(sample.wanted_n).filter(|_| self.is_reported);
-        if let Some((felt_n, wanted_n)) = errors {
-            self.friction_error.add(self.error.push(felt_n - wanted_n));
+        let errors = sample.felt_n.zip(sample.reference_n).filter(|_| self.is_reported);
+        if let Some((felt_n, reference_n)) = errors {
+            self.friction_error.add(self.error.push(felt_n - reference_n));
         }
         self.slewing_samples += u64::from(sample.slewing);
-        if let Some((inversion_n, asked_n)) = sample.inversion_n.zip(sample.asked_n).filter(|_| !sample.slewing) {
-            self.inversion_error.add(inversion_n - asked_n);
+        if let Some((inversion_n, commanded_n)) = sample.inversion_n.zip(sample.commanded_n).filter(|_| !sample.slewing)
+        {
+            self.inversion_error.add(inversion_n - commanded_n);
         }
         if let Some(load_mismatch_n) = sample.load_mismatch_n {
             self.load_mismatch.add(load_mismatch_n);
@@ -155,9 +156,9 @@ impl Metrics {
         if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
             self.carrier_ripple.add(ripple_n);
         }
-        if let Some(wanted_n) = sample.wanted_n.filter(|_| !sample.turning) {
-            let (least_n, largest_n) = self.wanted_range_n.unwrap_or((wanted_n, wanted_n));
-            self.wanted_range_n = Some((least_n.min(wanted_n), largest_n.max(wanted_n)));
+        if let Some(reference_n) = sample.reference_n.filter(|_| !sample.turning) {
+            let (least_n, largest_n) = self.reference_range_n.unwrap_or((reference_n, reference_n));
+            self.reference_range_n = Some((least_n.min(reference_n), largest_n.max(reference_n)));
         }
     }
 
@@ -174,7 +175,7 @@ impl Metrics {
             inversion_error: self.inversion_error.size().filter(|_| every_tick_reported),
             load_mismatch: self.load_mismatch.size(),
             carrier_ripple_rms_n: self.carrier_ripple.size().map(|size| size.rms_n),
-            wanted_range_n: self.wanted_range_n,
+            reference_range_n: self.reference_range_n,
         }
     }
 }

@@ -95,12 +95,12 @@ fn the_reference_is_the_resampled_picture() {
     assert!(rows.len() > 44_000);
     let mut span_n = (f64::INFINITY, 0.0_f64);
     for row in rows.iter().step_by(997) {
-        let (Some(x_mm), Some(y_mm), Some(wanted_n)) = (row.x_mm, row.y_mm, row.wanted_n) else { continue };
+        let (Some(x_mm), Some(y_mm), Some(reference_n)) = (row.x_mm, row.y_mm, row.reference_n) else { continue };
         let expected_n = 0.25 + picture_n(&program, 1e-3 * x_mm, 1e-3 * y_mm);
         // Four millionths of the range from black to white, for the places that the scene stores as f32.
         let tolerance_n = 4e-6 * (BLACK_WHITE_N.1 - BLACK_WHITE_N.0);
-        assert!((wanted_n - expected_n).abs() < tolerance_n, "({x_mm}, {y_mm}): {wanted_n} is not {expected_n}");
-        span_n = (span_n.0.min(wanted_n), span_n.1.max(wanted_n));
+        assert!((reference_n - expected_n).abs() < tolerance_n, "({x_mm}, {y_mm}): {reference_n} is not {expected_n}");
+        span_n = (span_n.0.min(reference_n), span_n.1.max(reference_n));
     }
     assert!(span_n.1 - span_n.0 > 50e-3, "the stroke crosses bricks and mortar: {span_n:?}");
 }

@@ -81,9 +81,9 @@ impl Entry {
         let simulated =
             simulate(&program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{}: {error}", self.name));
         let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
-        let mut wanted_n: Vec<f64> = sliding.filter_map(|row| row.wanted_n).collect();
-        wanted_n.sort_by(f64::total_cmp);
-        let percentile_n = |percent: usize| wanted_n[percent * (wanted_n.len() - 1) / 100];
+        let mut reference_n: Vec<f64> = sliding.filter_map(|row| row.reference_n).collect();
+        reference_n.sort_by(f64::total_cmp);
+        let percentile_n = |percent: usize| reference_n[percent * (reference_n.len() - 1) / 100];
         weber_steps(percentile_n(5), percentile_n(95))
     }
 }
@@ -152,7 +152,7 @@ fn every_scene_is_felt_without_a_fault_and_within_reach() {
         }
         // A fault would have ended the play, and the drive with it.
         let wants = |row: &&FeltRow| {
-            let friction_n = row.wanted_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
+            let friction_n = row.reference_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
             friction_n.is_some_and(|friction_n| friction_n > program.reach.natural_friction_n + 1e-3)
         };
         let drives = |row: &&FeltRow| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0);

@@ -86,8 +86,8 @@ fn json_has_every_number_and_the_same_seed_the_same_bytes() {
         "carrier_ripple_rms_n",
         "reachable_min_n",
         "reachable_max_n",
-        "wanted_min_n",
-        "wanted_max_n",
+        "reference_min_n",
+        "reference_max_n",
         "saturated_ticks",
         "frames_sent",
         "frames_rejected",
@@ -142,7 +142,7 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
     let folder = TempDir::new().unwrap();
     let realistic = play_constant(folder.path(), &[]);
     assert_eq!(realistic["world"], "realistic");
-    let range_n = number(&realistic, "wanted_max_n") - number(&realistic, "wanted_min_n");
+    let range_n = number(&realistic, "reference_max_n") - number(&realistic, "reference_min_n");
     assert!(range_n > 20e-3, "natural friction changes by {range_n} N");
     let error_n = number(&realistic, "friction_error_rms_n");
     assert!((1e-5..2e-3).contains(&error_n), "{error_n} N rms");
@@ -153,7 +153,7 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
 
     // Back and forth: where the finger turns, friction against its motion is negative for some micrometres.
     let turns = play_constant(folder.path(), &["--times", "3"]);
-    assert!(number(&turns, "wanted_min_n") > 0.15, "{turns}");
+    assert!(number(&turns, "reference_min_n") > 0.15, "{turns}");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
     let said = succeed(folder.path(), &["play", "constant.toml", "--seconds", "0.1"]);
     assert!(
@@ -164,7 +164,7 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
 
     let ideal = play_constant(folder.path(), &["--ideal"]);
     assert_eq!(ideal["world"], "ideal");
-    let range_n = number(&ideal, "wanted_max_n") - number(&ideal, "wanted_min_n");
+    let range_n = number(&ideal, "reference_max_n") - number(&ideal, "reference_min_n");
     assert!(range_n.abs() < 1e-9, "an ideal finger's friction changes by {range_n} N");
     assert!(number(&ideal, "friction_error_rms_n") < error_n);
 }
@@ -178,8 +178,8 @@ fn a_drawn_finger_is_felt_and_the_board_does_not_know_it() {
         let natural_n = person.contact(screen_gap_m).unwrap().natural_friction_n();
         let json = play_constant(folder.path(), &["--ideal", "--finger-seed", seed]);
         assert_eq!((&json["finger_seed"].to_string()[..], &json["finger_origin"]), (seed, &"assumed".into()));
-        let wanted_n = number(&json, "wanted_max_n");
-        assert!((wanted_n - natural_n - 2e-3).abs() < 1e-5, "{wanted_n} N is not {natural_n} N and 2 mN");
+        let reference_n = number(&json, "reference_max_n");
+        assert!((reference_n - natural_n - 2e-3).abs() < 1e-5, "{reference_n} N is not {natural_n} N and 2 mN");
         let reachable_n = number(&json, "reachable_min_n");
         assert!((reachable_n - 0.25).abs() < 1e-9, "the board was told of another finger: {reachable_n} N");
         let (error_n, table_error_n) = (number(&json, "friction_error_rms_n"), number(&json, "inversion_error_rms_n"));

@@ -186,17 +186,17 @@ fn friction_out_of_reach_is_measured_and_its_layer_named() {
         ),
     ];
     let check = files.check(&format!("{saturate}{}", layers.concat()));
-    let asked = &check["asked"];
+    let targets = &check["targets"];
     let near = |value: &Value, expected: f64| {
         let found = value.as_f64().unwrap();
         assert!((found - expected).abs() < 1e-6 * expected, "{found} is not {expected}");
     };
-    near(&asked["least_n"], 0.2);
-    near(&asked["most_n"], 0.3);
-    near(&asked["above"]["screen_percent"], 25.0);
-    near(&asked["below"]["screen_percent"], 25.0);
-    assert_eq!(asked["above"]["layers"], serde_json::json!(["layer 1 \"too rough\""]));
-    assert_eq!(asked["below"]["layers"], serde_json::json!(["layer 2 \"too smooth\""]));
+    near(&targets["least_n"], 0.2);
+    near(&targets["most_n"], 0.3);
+    near(&targets["above"]["screen_percent"], 25.0);
+    near(&targets["below"]["screen_percent"], 25.0);
+    assert_eq!(targets["above"]["layers"], serde_json::json!(["layer 1 \"too rough\""]));
+    assert_eq!(targets["below"]["layers"], serde_json::json!(["layer 2 \"too smooth\""]));
     // The paper's Eqs. (43), (21) at 150 V.
     near(&check["reach"]["natural_n"], 0.25);
     near(&check["reach"]["total_max_n"], 0.277_781_2);
@@ -204,8 +204,8 @@ fn friction_out_of_reach_is_measured_and_its_layer_named() {
     let text = succeed(&repository(), &["check", &files.path("scene.toml")]);
     assert!(text.contains("25.0 % of the screen above, by layer 1 \"too rough\"; 25.0 %"), "{text}");
     let inside = files.check(&constant("friction_n = 0.26"));
-    near(&inside["asked"]["most_n"], 0.26);
-    assert_eq!(inside["asked"]["above"]["screen_percent"], 0.0);
+    near(&inside["targets"]["most_n"], 0.26);
+    assert_eq!(inside["targets"]["above"]["screen_percent"], 0.0);
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn write_wav(path: &Path, samples: &[i16]) {
 }
 
 /// Total friction, `ticks` ticks after the first one that plays, from the file's samples and nothing else.
-fn wanted_n(samples: &[i16], ticks: f64) -> f64 {
+fn reference_n(samples: &[i16], ticks: f64) -> f64 {
     let value = |index: f64| (f64::from(samples[index as usize]) + 32_768.0) / 65_535.0;
     let place = (ticks - 1.0).max(0.0) * f64::from(SAMPLE_HZ) / TICK_HZ;
     let before = place.floor();
@@ -118,10 +118,11 @@ fn the_board_commands_the_streamed_samples() {
     let ticks = 10 * samples.len() - 20;
     let mut at_once = 0;
     for (tick, row) in played[..ticks].iter().enumerate() {
-        let asked_n = row.asked_n.unwrap();
+        let commanded_n = row.commanded_n.unwrap();
         // A tick that takes an order may hold the command of a few ticks before.
-        let lag = (0..7.min(tick + 1)).find(|lag| (asked_n - wanted_n(&samples, (tick - lag) as f64)).abs() < 1e-7);
-        assert!(lag.is_some(), "tick {tick}: {asked_n} N is not {} N", wanted_n(&samples, tick as f64));
+        let lag =
+            (0..7.min(tick + 1)).find(|lag| (commanded_n - reference_n(&samples, (tick - lag) as f64)).abs() < 1e-7);
+        assert!(lag.is_some(), "tick {tick}: {commanded_n} N is not {} N", reference_n(&samples, tick as f64));
         at_once += usize::from(lag == Some(0));
     }
     assert!(at_once * 100 > 95 * ticks, "{at_once} of {ticks} ticks at once");
@@ -135,24 +136,24 @@ fn a_host_that_pauses_is_one_underrun_and_a_fade_and_never_a_stale_value() {
     assert_eq!(status.sent, 4_000, "all of it was played in the end");
     let played = from_start(&rows);
     let dry = played.iter().position(is_dry).unwrap();
-    let held_n = played[dry].asked_n.unwrap() - NATURAL_N;
+    let held_n = played[dry].commanded_n.unwrap() - NATURAL_N;
     let back = dry + played[dry..].iter().position(|row| !is_dry(row)).unwrap();
     assert!(back - dry > 4_000, "a fade of 400 ticks and a long rest: {}", back - dry);
     for (tick, row) in played[dry..back].iter().enumerate() {
-        let asked_n = row.asked_n.unwrap() - NATURAL_N;
+        let commanded_n = row.commanded_n.unwrap() - NATURAL_N;
         let weight = (1.0 - tick as f64 / FADE_TICKS).max(0.0);
         // `held_n` includes the first step of the fade, so the end of the fade comes one step early.
-        assert!((asked_n - weight * held_n).abs() <= held_n / FADE_TICKS + 1e-9, "{tick}: {asked_n} N");
-        assert!(tick < 410 || asked_n.abs() < 1e-12, "{tick}: {asked_n} N is stale");
+        assert!((commanded_n - weight * held_n).abs() <= held_n / FADE_TICKS + 1e-9, "{tick}: {commanded_n} N");
+        assert!(tick < 410 || commanded_n.abs() < 1e-12, "{tick}: {commanded_n} N is stale");
     }
     // It goes on with the sample that it waited for, and fades in from nothing.
-    assert!(played[back].asked_n.unwrap() - NATURAL_N < 2.0 * HIGH_N / FADE_TICKS);
+    assert!(played[back].commanded_n.unwrap() - NATURAL_N < 2.0 * HIGH_N / FADE_TICKS);
     let samples = tones();
     let first = (0..samples.len() - 50).find(|first| {
         (420..440).all(|tick| {
             let place = *first as f64 * 10.0 + f64::from(tick);
-            let wanted_n = wanted_n(&samples, place);
-            (played[back + tick as usize].asked_n.unwrap() - wanted_n).abs() < 1e-7
+            let reference_n = reference_n(&samples, place);
+            (played[back + tick as usize].commanded_n.unwrap() - reference_n).abs() < 1e-7
         })
     });
     let expected = (dry as f64 * f64::from(SAMPLE_HZ) / TICK_HZ).round();
@@ -167,18 +168,24 @@ fn the_recorder_knows_what_is_streamed() {
         let (rows, status) = play(pause_ms.clone());
         assert_eq!(status.underruns, u32::from(dry_s > 0.0));
         let filling = rows.iter().position(is_dry).unwrap();
-        assert!(rows[..filling].iter().all(|row| (row.wanted_n.unwrap() - NATURAL_N).abs() < 1e-12), "nothing streams");
+        assert!(
+            rows[..filling].iter().all(|row| (row.reference_n.unwrap() - NATURAL_N).abs() < 1e-12),
+            "nothing streams"
+        );
         let played = from_start(&rows);
         if status.underruns == 0 {
             for (tick, row) in played[..10 * samples.len() - 20].iter().enumerate() {
-                let expected_n = wanted_n(&samples, tick as f64);
-                assert!((row.wanted_n.unwrap() - expected_n).abs() < 1e-9, "{tick}: {:?} N", row.wanted_n);
+                let expected_n = reference_n(&samples, tick as f64);
+                assert!((row.reference_n.unwrap() - expected_n).abs() < 1e-9, "{tick}: {:?} N", row.reference_n);
             }
         }
-        let as_asked = |row: &FeltRow| (row.asked_n.unwrap() - row.wanted_n.unwrap()).abs() < 2e-7;
-        let same = played.iter().filter(|row| as_asked(row)).count();
+        let as_commanded = |row: &FeltRow| (row.commanded_n.unwrap() - row.reference_n.unwrap()).abs() < 2e-7;
+        let same = played.iter().filter(|row| as_commanded(row)).count();
         assert!(same * 100 > 95 * played.len(), "{same} of {} ticks, paused {pause_ms:?} ms", played.len());
-        assert!(as_asked(played.last().unwrap()) && played.last().unwrap().wanted_n == Some(NATURAL_N), "it has faded");
+        assert!(
+            as_commanded(played.last().unwrap()) && played.last().unwrap().reference_n == Some(NATURAL_N),
+            "it has faded"
+        );
     }
 }
 

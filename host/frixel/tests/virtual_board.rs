@@ -184,16 +184,16 @@ fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
     let played = interrupt(process);
     assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
     let json: serde_json::Value = serde_json::from_slice(&played.stdout).unwrap();
-    assert!(json["wanted_max_n"].as_f64().unwrap() > 0.265, "{json}");
+    assert!(json["reference_max_n"].as_f64().unwrap() > 0.265, "{json}");
 
     let friction_n = |cell: &str| cell.parse::<f64>().ok();
     let rows = felt_cells(folder.path());
     let pairs: Vec<(f64, f64)> =
         rows.iter().filter_map(|row| Some((friction_n(&row[4])?, friction_n(&row[5])?))).collect();
     assert!(pairs.len() > 500, "{} rows with a finger", pairs.len());
-    let near = pairs.iter().filter(|(wanted_n, asked_n)| (wanted_n - asked_n).abs() < 2e-3).count();
+    let near = pairs.iter().filter(|(reference_n, commanded_n)| (reference_n - commanded_n).abs() < 2e-3).count();
     assert!(near * 10 > pairs.len() * 9, "the reference is near the command in {near} of {} rows", pairs.len());
-    let varied = pairs.iter().filter(|(_, asked_n)| (asked_n - 0.25).abs() > 4e-3).count();
+    let varied = pairs.iter().filter(|(_, commanded_n)| (commanded_n - 0.25).abs() > 4e-3).count();
     assert!(varied * 2 > pairs.len(), "something was streamed in {varied} of {} rows", pairs.len());
 }
 

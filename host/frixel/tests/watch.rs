@@ -43,15 +43,15 @@ fn scene(friction: &str) -> String {
     )
 }
 
-/// The column `asked_n`, a row a millisecond, without a row that is half written.
-fn asked_n(folder: &Path) -> Vec<f64> {
+/// The column `commanded_n`, a row a millisecond, without a row that is half written.
+fn commanded_n(folder: &Path) -> Vec<f64> {
     let text = rows_so_far(folder);
     let Some((rows, _)) = text.rsplit_once('\n') else { return Vec::new() };
     rows.lines().skip(1).filter_map(|row| row.split(',').nth(5)?.parse().ok()).collect()
 }
 
-fn is(asked_n: f64, expected_n: f64) -> bool {
-    (asked_n - expected_n).abs() < 1e-6
+fn is(commanded_n: f64, expected_n: f64) -> bool {
+    (commanded_n - expected_n).abs() < 1e-6
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
     fs::write(path("scene.toml"), scene("0.26")).unwrap();
     let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
-    let last_n = || asked_n(&path("board")).last().copied().unwrap_or_default();
+    let last_n = || commanded_n(&path("board")).last().copied().unwrap_or_default();
     until("the first scene plays", || is(last_n(), 0.26));
 
     // As an editor saves that keeps the old file until the new one is whole.
@@ -74,8 +74,8 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
 
     fs::write(path("scene.toml"), scene("0.28x").replace("[finger]", "[fingr]")).unwrap();
     until("the mistakes are reported", || said().contains("is not played: the previous scene keeps playing"));
-    let rows = asked_n(&path("board")).len();
-    until("the second scene plays on", || asked_n(&path("board")).len() > rows + 300);
+    let rows = commanded_n(&path("board")).len();
+    until("the second scene plays on", || commanded_n(&path("board")).len() > rows + 300);
 
     fs::write(path("scene.toml"), scene("0.255")).unwrap();
     until("the mended scene plays", || is(last_n(), 0.255));
@@ -89,19 +89,19 @@ fn a_saved_scene_plays_and_one_with_mistakes_does_not() {
 
     // Natural friction until the board knows the finger; then one scene after the other, and nothing else: a row is a
     // mean over a millisecond, so that one row at each change may be of two scenes.
-    let asked = asked_n(&path("board"));
-    let begin = asked.iter().position(|asked_n| *asked_n > 0.2501).unwrap();
+    let asked = commanded_n(&path("board"));
+    let begin = asked.iter().position(|commanded_n| *commanded_n > 0.2501).unwrap();
     let mut others = Vec::new();
     let mut left = [0.26, 0.27, 0.255].into_iter();
     let mut now_n = left.next().unwrap();
-    let end = asked.iter().rposition(|asked_n| is(*asked_n, 0.255)).unwrap();
-    for asked_n in &asked[begin + 1..end] {
-        if is(*asked_n, now_n) {
+    let end = asked.iter().rposition(|commanded_n| is(*commanded_n, 0.255)).unwrap();
+    for commanded_n in &asked[begin + 1..end] {
+        if is(*commanded_n, now_n) {
             continue;
         }
         match left.clone().next() {
-            Some(next_n) if is(*asked_n, next_n) => now_n = left.next().unwrap(),
-            _ => others.push(*asked_n),
+            Some(next_n) if is(*commanded_n, next_n) => now_n = left.next().unwrap(),
+            _ => others.push(*commanded_n),
         }
     }
     assert_eq!(left.next(), None, "all three were played");
@@ -136,7 +136,7 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
     let mut board = virtual_board(folder.path(), &[]);
     let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
-    until("the first scene plays", || !asked_n(&path("client")).is_empty());
+    until("the first scene plays", || !commanded_n(&path("client")).is_empty());
     fs::write(path("scene.toml"), picture_scene("other.png")).unwrap();
     until("the saved scene plays", || said().contains("the output faded out meanwhile"));
 
@@ -146,8 +146,8 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
 
     fs::remove_file(path("scene.toml")).unwrap();
     until("the file's end is said", || said().contains("scene.toml is gone"));
-    let before = asked_n(&path("client")).len();
-    until("the scene plays on", || asked_n(&path("client")).len() > before + 300);
+    let before = commanded_n(&path("client")).len();
+    until("the scene plays on", || commanded_n(&path("client")).len() > before + 300);
     fs::write(path("scene.toml"), scene("0.26")).unwrap();
     until("the file is there again", || said().matches("plays as it was saved").count() == 3);
     assert!(client.interrupt(), "{}", said());
@@ -167,7 +167,7 @@ fn an_included_file_is_followed() {
     let mut board = virtual_board(folder.path(), &[]);
     let mut client = watching_client(folder.path(), &board.port);
     let said = || fs::read_to_string(path("said")).unwrap();
-    let last_n = || asked_n(&path("client")).last().copied().unwrap_or_default();
+    let last_n = || commanded_n(&path("client")).last().copied().unwrap_or_default();
     until("the first scene plays", || is(last_n(), 0.26));
 
     fs::write(path("parts/flat.toml"), part("0.27")).unwrap();

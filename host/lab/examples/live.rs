@@ -64,8 +64,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{:.2} s  {:?}", marker.t_s, marker.event);
     }
     for t_ms in [150, 350, 550, 620, 750] {
-        let asked_n = recorder.rows().get(t_ms).and_then(|row| row.asked_n).ok_or("no row")?;
-        println!("{:.2} s  {:.0} mN commanded", 1e-3 * t_ms as f64, 1e3 * asked_n);
+        let commanded_n = recorder.rows().get(t_ms).and_then(|row| row.commanded_n).ok_or("no row")?;
+        println!("{:.2} s  {:.0} mN commanded", 1e-3 * t_ms as f64, 1e3 * commanded_n);
     }
     Ok(())
 }

@@ -54,8 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let status = played.stream.ok_or("nothing was streamed")?;
     println!("the closure gave {} samples, the board took {}", given.get(), status.sent);
     println!("{} underruns, {} gaps", status.underruns, status.gaps);
-    let asked_n: Vec<f64> = played.recorder.rows().iter().filter_map(|row| row.asked_n).collect();
-    let most_n = asked_n.iter().copied().fold(0.0, f64::max);
+    let commanded_n: Vec<f64> = played.recorder.rows().iter().filter_map(|row| row.commanded_n).collect();
+    let most_n = commanded_n.iter().copied().fold(0.0, f64::max);
     println!("commanded at most {:.0} mN", 1e3 * most_n);
     Ok(())
 }

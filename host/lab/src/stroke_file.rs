@@ -15,8 +15,8 @@ const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::Newtons);
 /// Columns of a play that a stroke does not need.
 const OF_A_PLAY: [&str; 10] = [
     "speed_mm_s",
-    "wanted_n",
-    "asked_n",
+    "reference_n",
+    "commanded_n",
     "felt_n",
     "natural_n",
     "electrode_v_rms",

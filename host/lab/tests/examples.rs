@@ -64,10 +64,10 @@ fn stream() {
 #[test]
 fn live() {
     let text = printed("live", &[]);
-    let asked_mn = |t_s: &str| number(&text, &format!("{t_s} s  "), " mN commanded") as u32;
+    let commanded_mn = |t_s: &str| number(&text, &format!("{t_s} s  "), " mN commanded") as u32;
     let times = ["0.15", "0.35", "0.55", "0.62", "0.75"];
     // The finger has 250 mN without voltage: half a gain is half of what is above.
-    assert_eq!(times.map(asked_mn), [280, 340, 265, 340, 265], "{text}");
+    assert_eq!(times.map(commanded_mn), [280, 340, 265, 340, 265], "{text}");
     assert_eq!(text.matches("Triggered").count(), 1, "{text}");
 }
 

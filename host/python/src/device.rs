@@ -239,10 +239,10 @@ fn answer(report: Report) -> Answer {
 
 fn message(telemetry: &Telemetry) -> Message {
     let Telemetry { tick, state, flags, finger_x_m, finger_y_m, speed_m_per_s, .. } = *telemetry;
-    let Telemetry { asked_electric_friction_n, voltage_v_rms, .. } = *telemetry;
+    let Telemetry { commanded_electric_friction_n, voltage_v_rms, .. } = *telemetry;
     let flags = flags.names().collect();
     let state = state_name(state);
-    (tick, state, flags, finger_x_m, finger_y_m, speed_m_per_s, asked_electric_friction_n, voltage_v_rms)
+    (tick, state, flags, finger_x_m, finger_y_m, speed_m_per_s, commanded_electric_friction_n, voltage_v_rms)
 }
 
 fn state_name(state: State) -> &'static str {

@@ -23,7 +23,7 @@ import pytest
 from frixel import Finger, ParameterError, Recording, Scene, Simulator, Stroke
 
 FLAT = {"layer": [{"kind": "constant", "friction_fraction": 0.5}]}
-DECIMALS = {"t_s": 6, "x_mm": 4, "y_mm": 4, "speed_mm_s": 3, "wanted_n": 9, "asked_n": 9, "felt_n": 9}
+DECIMALS = {"t_s": 6, "x_mm": 4, "y_mm": 4, "speed_mm_s": 3, "reference_n": 9, "commanded_n": 9, "felt_n": 9}
 
 
 def bits(recording: frixel.Recording) -> dict[str, bytes]:

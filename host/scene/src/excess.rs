@@ -152,11 +152,11 @@ impl Demand<'_> {
             // A larger voltage raises what a fraction asks for as well.
             let has_fraction = self.layers.iter().any(|played| has_fraction(played.layer));
             let has_newtons = self.layers.iter().any(|played| played.layer.places.has_unit("_n"));
-            let (asked_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
+            let (target_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
             let part_of_reach = asked.high / reach.electric_friction_max_n;
             let mistake = FitMistake::AboveReach {
                 asking: self.asking(clicked),
-                asked_n: digits(asked_n, up),
+                target_n: digits(target_n, up),
                 reference,
                 part_of_reach: (has_fraction && !has_newtons).then(|| digits(part_of_reach, up)),
                 voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
@@ -164,15 +164,15 @@ impl Demand<'_> {
                 cure: self.cure_above(is_sum),
                 raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
                 may_be_millinewtons: !has_fraction
-                    && asked_n > UNIT_MISTAKE_FACTOR * reach_n
-                    && 1e-3 * asked_n <= reach_n,
+                    && target_n > UNIT_MISTAKE_FACTOR * reach_n
+                    && 1e-3 * target_n <= reach_n,
             };
             sides.push(Side { offset: self.place(true), mistake });
         }
         if asked.low < within.low {
             let mistake = FitMistake::BelowNatural {
                 asking: self.asking(None),
-                asked_n: digits(asked.low + offset_n, down),
+                target_n: digits(asked.low + offset_n, down),
                 reference,
                 natural_n: digits(reach.natural_friction_n, f64::round),
                 cure: self.cure_below(above),
@@ -262,11 +262,11 @@ fn has_fraction(layer: &Layer) -> bool {
 
 fn note(side: &Side, ending: &str) -> String {
     match &side.mistake {
-        FitMistake::AboveReach { asking, asked_n, reference, reach_n, .. } => {
-            format!("{asking} up to {asked_n} N {reference}, and at most {reach_n} N can be reached{ending}")
+        FitMistake::AboveReach { asking, target_n, reference, reach_n, .. } => {
+            format!("{asking} up to {target_n} N {reference}, and at most {reach_n} N can be reached{ending}")
         }
-        FitMistake::BelowNatural { asking, asked_n, reference, natural_n, .. } => {
-            format!("{asking} down to {asked_n} N {reference}, below the natural friction of {natural_n} N{ending}")
+        FitMistake::BelowNatural { asking, target_n, reference, natural_n, .. } => {
+            format!("{asking} down to {target_n} N {reference}, below the natural friction of {natural_n} N{ending}")
         }
         other => other.to_string(),
     }

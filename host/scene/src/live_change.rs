@@ -28,19 +28,19 @@ pub struct LayerSetting {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "{} would ask for {} N above natural friction, and 0 to {reach_n} N can be reached", listed(&.layers.iter().collect::<Vec<_>>()),
-    side(*.asked_n, *.reach_n)
+    side(*.target_n, *.reach_n)
 )]
 pub struct Clamped {
     /// The layers, from bottom to top.
     pub layers: Vec<LayerTitle>,
     /// The friction that they ask for, N above natural friction.
-    pub asked_n: f64,
+    pub target_n: f64,
     /// The most that can be reached, rounded down, N above natural friction.
     pub reach_n: f64,
 }
 
-fn side(asked_n: f64, reach_n: f64) -> String {
-    format!("{} {asked_n}", if asked_n > reach_n { "up to" } else { "down to" })
+fn side(target_n: f64, reach_n: f64) -> String {
+    format!("{} {target_n}", if target_n > reach_n { "up to" } else { "down to" })
 }
 
 impl Program {
@@ -54,7 +54,7 @@ impl Program {
         let is_above = high - within.high > within.low - low;
         Some(Clamped {
             layers: titles.cloned().collect(),
-            asked_n: if is_above { digits(high, up) } else { digits(low, down) },
+            target_n: if is_above { digits(high, up) } else { digits(low, down) },
             reach_n: digits(self.reach.electric_friction_max_n, f64::floor),
         })
     }

@@ -118,7 +118,7 @@ pub(crate) fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
         "yMm": 1e3 * f64::from(telemetry.finger_y_m),
         "speedMmPerS": 1e3 * f64::from(telemetry.speed_m_per_s),
         "isTouched": !telemetry.flags.contains(Flags::NO_FINGER),
-        "referenceN": natural_n + f64::from(telemetry.asked_electric_friction_n),
+        "referenceN": natural_n + f64::from(telemetry.commanded_electric_friction_n),
         "voltageV": telemetry.voltage_v_rms,
     })
 }

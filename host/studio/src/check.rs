@@ -61,8 +61,8 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         "screen": screen(&scene),
         "layers": layers(&scene, &request.entry, &program, &check.judgement),
         "report": format!("{draft}{}", check.summary()),
-        "lowN": check.asked.least_n,
-        "highN": check.asked.most_n,
+        "lowN": check.targets.least_n,
+        "highN": check.targets.most_n,
         "reachN": check.reach.total_max_n,
         "naturalN": check.reach.natural_n,
     }))

@@ -91,7 +91,7 @@ impl FeltSampler {
                 column(|row| row.y_mm.unwrap_or(f64::NAN)),
                 column(|row| row.speed_mm_s.unwrap_or(f64::NAN)),
                 // On a bare screen, friction is natural.
-                column(|row| row.wanted_n.or(row.natural_n).unwrap_or(0.0)),
+                column(|row| row.reference_n.or(row.natural_n).unwrap_or(0.0)),
                 column(|row| row.felt_n.unwrap_or(0.0)),
                 column(|row| row.electrode_v_rms.unwrap_or(0.0)),
                 touch(|touched| in_mm(touched.places.predicted_m)[0]),

@@ -54,10 +54,10 @@ impl RowGrid {
         ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
     }
 
-    /// The row behind the one that has `asked_max_n`, which counts as `least_n` at least; `rows` when that is not below
+    /// The row behind the one that has `up_to_n`, which counts as `least_n` at least; `rows` when that is not below
     /// the largest friction or not a number.
-    pub(super) fn end_row(&self, rows: usize, asked_max_n: f32, least_n: f32) -> usize {
-        if asked_max_n < self.friction_max_n { self.row(asked_max_n.max(least_n)) + 1 } else { rows }
+    pub(super) fn end_row(&self, rows: usize, up_to_n: f32, least_n: f32) -> usize {
+        if up_to_n < self.friction_max_n { self.row(up_to_n.max(least_n)) + 1 } else { rows }
     }
 
     pub(super) fn friction_max_n(&self) -> f32 {

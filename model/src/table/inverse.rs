@@ -63,19 +63,15 @@ impl InverseTable {
         Self::build_up_to(contact, voltage_max_v_rms, f32::INFINITY)
     }
 
-    /// Builds the same table, truncated to the rows for electric frictions up to `asked_max_n`: up to there it returns
+    /// Builds the same table, truncated to the rows for electric frictions up to `up_to_n`: up to there it returns
     /// the same bits. A truncated row costs no evaluation of the closed form; it holds the voltage at the end of the
-    /// table. If `asked_max_n` is not below the largest friction, or is not-a-number, no row is truncated.
-    pub fn build_up_to(
-        contact: &LoadedContact<f64>,
-        voltage_max_v_rms: f64,
-        asked_max_n: f32,
-    ) -> Result<Self, TableError> {
+    /// table. If `up_to_n` is not below the largest friction, or is not-a-number, no row is truncated.
+    pub fn build_up_to(contact: &LoadedContact<f64>, voltage_max_v_rms: f64, up_to_n: f32) -> Result<Self, TableError> {
         if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
             return Err(TableError::Voltage);
         }
         let voltage_max_v_rms = DoubleSingle::from_f64(voltage_max_v_rms);
-        Self::in_double_single(contact.in_double_single(), voltage_max_v_rms, asked_max_n)
+        Self::in_double_single(contact.in_double_single(), voltage_max_v_rms, up_to_n)
     }
 
     /// Builds the same table from the parameters sent to a board: finger, effective gap of the coating in metres,
@@ -86,9 +82,9 @@ impl InverseTable {
         gap_m: f32,
         normal_load_n: f32,
         voltage_max_v_rms: f32,
-        asked_max_n: f32,
+        up_to_n: f32,
     ) -> Result<Self, TableError> {
-        let (mut table, mut filling) = Self::begin(finger, gap_m, normal_load_n, voltage_max_v_rms, asked_max_n)?;
+        let (mut table, mut filling) = Self::begin(finger, gap_m, normal_load_n, voltage_max_v_rms, up_to_n)?;
         filling.fill(&mut table, ROWS)?;
         Ok(table)
     }
@@ -101,13 +97,13 @@ impl InverseTable {
         gap_m: f32,
         normal_load_n: f32,
         voltage_max_v_rms: f32,
-        asked_max_n: f32,
+        up_to_n: f32,
     ) -> Result<(Self, InverseTableFilling), TableError> {
         if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
             return Err(TableError::Voltage);
         }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), asked_max_n)
+        Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), up_to_n)
     }
 
     /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The
@@ -126,13 +122,8 @@ impl InverseTable {
     /// assert!((law.electric_friction_n(f64::from(voltage_v_rms)) / f64::from(0.05_f32) - 1.0).abs() < 1e-5);
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
-    pub fn of_law(
-        exponent: f32,
-        points: &[LawPoint],
-        voltage_max_v_rms: f32,
-        asked_max_n: f32,
-    ) -> Result<Self, LawError> {
-        let (mut table, mut filling) = Self::begin_law(exponent, points, voltage_max_v_rms, asked_max_n)?;
+    pub fn of_law(exponent: f32, points: &[LawPoint], voltage_max_v_rms: f32, up_to_n: f32) -> Result<Self, LawError> {
+        let (mut table, mut filling) = Self::begin_law(exponent, points, voltage_max_v_rms, up_to_n)?;
         filling.fill(&mut table, ROWS)?;
         Ok(table)
     }
@@ -143,11 +134,11 @@ impl InverseTable {
         exponent: f32,
         points: &[LawPoint],
         voltage_max_v_rms: f32,
-        asked_max_n: f32,
+        up_to_n: f32,
     ) -> Result<(Self, EmpiricalTableFilling), LawError> {
         let curve = EmpiricalLaw::new(exponent, points, voltage_max_v_rms)?;
         let grid = curve.grid();
-        let end = grid.end_row(ROWS, asked_max_n, grid.start_n(0));
+        let end = grid.end_row(ROWS, up_to_n, grid.start_n(0));
         let start = grid.start(0, &curve);
         Ok((Self { grid, rows: [[0.0; 4]; ROWS] }, EmpiricalTableFilling(Filling { curve, rows: 0..end, start })))
     }
@@ -155,9 +146,9 @@ impl InverseTable {
     fn in_double_single(
         contact: LoadedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
-        asked_max_n: f32,
+        up_to_n: f32,
     ) -> Result<Self, TableError> {
-        let (mut table, mut filling) = Self::begin_in_double_single(contact, voltage_max_v_rms, asked_max_n)?;
+        let (mut table, mut filling) = Self::begin_in_double_single(contact, voltage_max_v_rms, up_to_n)?;
         filling.fill(&mut table, ROWS)?;
         Ok(table)
     }
@@ -165,7 +156,7 @@ impl InverseTable {
     fn begin_in_double_single(
         contact: LoadedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
-        asked_max_n: f32,
+        up_to_n: f32,
     ) -> Result<(Self, InverseTableFilling), TableError> {
         let largest = round_down(voltage_max_v_rms);
         let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
@@ -182,7 +173,7 @@ impl InverseTable {
         if friction_max_n > FRICTION_MAX_N {
             return Err(TableError::Unrepresentable);
         }
-        let end = grid.end_row(ROWS, asked_max_n, knee_n);
+        let end = grid.end_row(ROWS, up_to_n, knee_n);
         let start = grid.start(knee_row, &contact);
         let (knee_start_n, knee_start_v_rms) = start;
         let line = [0.0, (knee_start_v_rms / knee_start_n).to_f32(), 0.0, 0.0];

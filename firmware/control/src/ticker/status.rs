@@ -32,7 +32,7 @@ impl Ticker<'_> {
                 finger_x_m,
                 finger_y_m,
                 speed_m_per_s: self.speed_m_per_s(),
-                asked_electric_friction_n: self.electric_friction_n,
+                commanded_electric_friction_n: self.electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
                 dac_code: self.dac_code.bits(),
             },

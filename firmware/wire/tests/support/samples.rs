@@ -195,7 +195,7 @@ fn telemetry(state: State) -> Telemetry {
         finger_x_m: 0.05,
         finger_y_m: 0.025,
         speed_m_per_s: 0.1,
-        asked_electric_friction_n: 0.012,
+        commanded_electric_friction_n: 0.012,
         voltage_v_rms: 75.5,
         dac_code: -9_895 + 64 * i16::from(state.number()),
     }

@@ -59,7 +59,7 @@ pub struct SceneCheck {
     /// Friction that the drive can reach on this finger.
     pub reach: ReachableFriction,
     /// Friction that the scene targets.
-    pub asked: TargetRange,
+    pub targets: TargetRange,
     /// Reasons to doubt these newtons, a sentence each.
     pub warnings: Vec<String>,
     /// What a person will feel of it.
@@ -186,7 +186,7 @@ impl SceneCheck {
                 total_max_n: reach.friction_max_n(),
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
-            asked: TargetRange::of(program),
+            targets: TargetRange::of(program),
             warnings: program.warnings().map(ToString::to_string).collect(),
             judgement,
             notes: program.notes().map(str::to_owned).collect(),

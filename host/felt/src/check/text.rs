@@ -15,7 +15,7 @@ impl SceneCheck {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<16} {value}");
         };
-        let Self { wire, ram, tick, finger, reach, asked, .. } = self;
+        let Self { wire, ram, tick, finger, reach, targets, .. } = self;
         line("layers", self.layers.to_string());
         line(
             "wire",
@@ -58,9 +58,9 @@ impl SceneCheck {
             ),
         );
         // The limit is printed rounded down: round a target within reach down as well, so that it is not above.
-        let most_n = if asked.above.screen_percent <= 0.0 { rounded_down(asked.most_n) } else { asked.most_n };
-        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", asked.least_n.min(most_n)));
-        line("out of reach", out_of_reach(&asked.above, &asked.below));
+        let most_n = if targets.above.screen_percent <= 0.0 { rounded_down(targets.most_n) } else { targets.most_n };
+        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", targets.least_n.min(most_n)));
+        line("out of reach", out_of_reach(&targets.above, &targets.below));
         for warning in &self.warnings {
             line("warning", warning.clone());
         }

@@ -255,7 +255,7 @@ impl<'e> Measure<'e> {
                 let gain = self.element.program.start.get(self.element.layer).map_or(1.0, |setting| setting.gain);
                 let amplitude_n = 0.5 * f64::from(gain) * f64::from(vibration.high_n - vibration.low_n).abs();
                 let mean_n = |value: fn(&Moment) -> f64| touch.iter().map(value).sum::<f64>() / touch.len() as f64;
-                let part = (mean_n(|moment| moment.felt_n) / mean_n(|moment| moment.wanted_n)).clamp(0.0, 1.0);
+                let part = (mean_n(|moment| moment.felt_n) / mean_n(|moment| moment.reference_n)).clamp(0.0, 1.0);
                 let speed_mm_per_s = 1e3 * mean_n(|moment| moment.context.speed_m_per_s);
                 Texture::new(speed_mm_per_s, vibration.frequency_hz.into(), part * amplitude_n)
             }

@@ -20,7 +20,7 @@ pub(super) struct Moment {
     /// Friction of the scene, under its finger.
     pub(super) scene_n: f64,
     /// What a display without fault would have given.
-    pub(super) wanted_n: f64,
+    pub(super) reference_n: f64,
     pub(super) felt_n: f64,
     /// Natural friction of the finger.
     pub(super) natural_n: f64,
@@ -36,7 +36,7 @@ impl Moment {
             context,
             visible: visible_layers(scene, context.x_m, context.y_m),
             scene_n: electric_n(scene, program, &context),
-            wanted_n: mean(&FidelitySample::reference_electric_n),
+            reference_n: mean(&FidelitySample::reference_electric_n),
             felt_n: mean(&FidelitySample::felt_electric_n),
             natural_n: mean(&|sample| sample.natural_n),
         })
@@ -77,7 +77,7 @@ pub(super) fn electric_n(reference: &Reference, program: &Program, context: &Con
 
 /// The same moments under a display without fault.
 pub(super) fn faultless(runs: &[Vec<Moment>]) -> Vec<Vec<Moment>> {
-    let faultless = |moment: &Moment| Moment { felt_n: moment.wanted_n, ..*moment };
+    let faultless = |moment: &Moment| Moment { felt_n: moment.reference_n, ..*moment };
     runs.iter().map(|run| run.iter().map(faultless).collect()).collect()
 }
 

@@ -28,7 +28,7 @@ fn of_part(moments: &[Moment], own_n: &[f64]) -> Option<Texture> {
         let signal: Vec<f64> = moments.iter().map(value).collect();
         component_power(&Spectrum::of(&signal, MOMENT_HZ), frequency_hz)
     };
-    let felt = power(|moment| moment.felt_n).min(power(|moment| moment.wanted_n));
+    let felt = power(|moment| moment.felt_n).min(power(|moment| moment.reference_n));
     let part = (felt / power(|moment| moment.scene_n)).sqrt();
     Texture::new(1e3 * speed, frequency_hz, part * amplitude_n)
 }

@@ -5,13 +5,13 @@ use super::*;
 const HALF_PERIOD_TICKS: u32 = 4;
 const PERIOD: usize = 8;
 
-fn sample(wanted_n: f64, felt_n: f64) -> Sample {
+fn sample(reference_n: f64, felt_n: f64) -> Sample {
     Sample {
         finger_down: true,
         turning: false,
         board_has_finger: Some(true),
-        wanted_n: Some(wanted_n),
-        asked_n: Some(wanted_n),
+        reference_n: Some(reference_n),
+        commanded_n: Some(reference_n),
         felt_n: Some(felt_n),
         inversion_n: Some(felt_n),
         slewing: false,
@@ -24,8 +24,8 @@ const UP: Sample = Sample {
     finger_down: false,
     turning: false,
     board_has_finger: Some(false),
-    wanted_n: None,
-    asked_n: None,
+    reference_n: None,
+    commanded_n: None,
     felt_n: None,
     inversion_n: None,
     slewing: false,
@@ -56,18 +56,18 @@ fn without_samples_there_is_no_metric() {
     let summary = gather(&[up, up]);
     assert_eq!((summary.ticks, summary.finger_down_ticks, summary.saturated_ticks), (2, 0, Some(2)));
     assert_eq!((summary.friction_error, summary.inversion_error), (None, None));
-    assert_eq!((summary.carrier_ripple_rms_n, summary.wanted_range_n), (None, None));
+    assert_eq!((summary.carrier_ripple_rms_n, summary.reference_range_n), (None, None));
 }
 
 /// One sample in 40 ticks, as in a board's telemetry, without the felt friction.
 #[test]
 fn metrics_that_need_every_tick_are_absent_when_some_are_missing() {
     let mut metrics = Metrics::new(HALF_PERIOD_TICKS);
-    for wanted_n in [0.26, 0.27] {
-        metrics.add(&Sample { felt_n: None, ..sample(wanted_n, 0.25) });
+    for reference_n in [0.26, 0.27] {
+        metrics.add(&Sample { felt_n: None, ..sample(reference_n, 0.25) });
     }
     let summary = metrics.summary(41);
-    assert_eq!(summary.wanted_range_n, Some((0.26, 0.27)));
+    assert_eq!(summary.reference_range_n, Some((0.26, 0.27)));
     assert_eq!((summary.saturated_ticks, summary.inversion_error), (None, None));
     assert_eq!((summary.friction_error, summary.carrier_ripple_rms_n), (None, None));
     assert!(metrics.summary(2).inversion_error.is_some(), "two of two ticks were seen");
@@ -111,7 +111,7 @@ fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
     close(error.rms_n, rms(&[0.001, -0.002]));
     close(error.max_n, 0.002);
     assert_eq!((summary.ticks, summary.saturated_ticks), (3, Some(1)));
-    assert_eq!(summary.wanted_range_n, Some((0.26, 0.4)));
+    assert_eq!(summary.reference_range_n, Some((0.26, 0.4)));
 }
 
 #[test]
@@ -181,7 +181,7 @@ proptest! {
 
 #[test]
 fn friction_before_the_first_touch_report_is_no_error_and_is_counted_apart() {
-    let unreported = |wanted_n| Sample { board_has_finger: Some(false), ..sample(wanted_n, 0.25) };
+    let unreported = |reference_n| Sample { board_has_finger: Some(false), ..sample(reference_n, 0.25) };
     let touch = [unreported(0.4), unreported(0.4), sample(0.25, 0.25), unreported(0.251), sample(0.25, 0.25)];
     let summary = gather(&[&touch[..], &[UP], &touch[..2]].concat());
     assert_eq!(summary.unreported_ticks, 4);

@@ -84,8 +84,8 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Creates a recorder for a board whose program is unknown: until [`Self::scene_replaced`], no row has `wanted_n`,
-    /// and the summary has no errors.
+    /// Creates a recorder for a board whose program is unknown: until [`Self::scene_replaced`], no row has
+    /// `reference_n`, and the summary has no errors.
     pub fn without_reference(tick_hz: u32, ticks_per_row: u32) -> Self {
         Self {
             comparison: None,
@@ -316,7 +316,7 @@ impl Comparison {
         let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
         let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);
         let in_reach = in_scene_n.is_some_and(|in_scene_n| self.inversion.reaches(in_scene_n - scenes_natural_n));
-        let (natural_n, wanted_n) = match (finger, &observation.felt) {
+        let (natural_n, reference_n) = match (finger, &observation.felt) {
             (Some(finger), Some(felt)) => {
                 let through_finger_n = finger.follow(felt, electric_n.unwrap_or(0.0));
                 (felt.friction_n - felt.electric_friction_n, electric_n.map(|_| through_finger_n))
@@ -324,14 +324,14 @@ impl Comparison {
             _ => (scenes_natural_n, in_scene_n),
         };
         let telemetry = observation.telemetry.as_ref();
-        let asked_n = telemetry.map(|telemetry| natural_n + f64::from(telemetry.asked_electric_friction_n));
+        let commanded_n = telemetry.map(|telemetry| natural_n + f64::from(telemetry.commanded_electric_friction_n));
         let felt_n = observation.felt.map(|felt| felt.friction_n);
         self.metrics.add(&Sample {
             finger_down: observation.finger.is_some(),
             board_has_finger: observation.board_has_finger(),
-            wanted_n,
+            reference_n,
             turning,
-            asked_n,
+            commanded_n,
             felt_n,
             inversion_n: telemetry.filter(|_| in_reach).map(|telemetry| {
                 natural_n + self.inversion.electric_friction_n(telemetry.voltage_v_rms, telemetry.dac_code)
@@ -340,7 +340,7 @@ impl Comparison {
             load_mismatch_n: observation.felt.map(|felt| felt.load_mismatch_n),
             saturated: telemetry.map(|telemetry| telemetry.flags.contains(Flags::SATURATED)),
         });
-        Frictions { wanted_n, asked_n, felt_n }
+        Frictions { reference_n, commanded_n, felt_n }
     }
 
     /// Electric friction of the reference at the finger's place; `None` while the finger is up.

@@ -19,9 +19,9 @@ pub struct FeltRow {
     /// The finger's speed at the end of the row, mm/s.
     pub speed_mm_s: Option<f64>,
     /// The reference: friction of the scene at the finger's place, N.
-    pub wanted_n: Option<f64>,
+    pub reference_n: Option<f64>,
     /// The board's target, the input of its inverse: friction, N.
-    pub asked_n: Option<f64>,
+    pub commanded_n: Option<f64>,
     /// Friction that the finger felt, N.
     pub felt_n: Option<f64>,
     /// The part of the felt friction that a simulated finger has without the drive, N.
@@ -69,8 +69,8 @@ impl Display for FlagNames {
 /// Total frictions at one tick, N.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frictions {
-    pub(super) wanted_n: Option<f64>,
-    pub(super) asked_n: Option<f64>,
+    pub(super) reference_n: Option<f64>,
+    pub(super) commanded_n: Option<f64>,
     pub(super) felt_n: Option<f64>,
 }
 
@@ -78,10 +78,10 @@ impl Frictions {
     /// The frictions that are known without a program. Natural friction is then that of the simulated finger.
     pub(super) fn without_reference(observation: &Observation) -> Self {
         let natural_n = observation.felt.map(|felt| felt.friction_n - felt.electric_friction_n);
-        let electric_n = observation.telemetry.map(|telemetry| f64::from(telemetry.asked_electric_friction_n));
+        let electric_n = observation.telemetry.map(|telemetry| f64::from(telemetry.commanded_electric_friction_n));
         Self {
-            wanted_n: None,
-            asked_n: natural_n.zip(electric_n).map(|(natural_n, electric_n)| natural_n + electric_n),
+            reference_n: None,
+            commanded_n: natural_n.zip(electric_n).map(|(natural_n, electric_n)| natural_n + electric_n),
             felt_n: observation.felt.map(|felt| felt.friction_n),
         }
     }
@@ -98,8 +98,8 @@ pub(super) struct RowMaker {
     /// End of the current row, in ticks after time zero.
     row_end: u64,
     row: FeltRow,
-    wanted: Mean,
-    asked: Mean,
+    reference: Mean,
+    commanded: Mean,
     felt: Mean,
     natural: Mean,
     electrode_v2: Mean,
@@ -114,8 +114,8 @@ impl RowMaker {
             ticks_per_row: u64::from(ticks_per_row.max(1)),
             row_end: 0,
             row: FeltRow::default(),
-            wanted: Mean::default(),
-            asked: Mean::default(),
+            reference: Mean::default(),
+            commanded: Mean::default(),
             felt: Mean::default(),
             natural: Mean::default(),
             electrode_v2: Mean::default(),
@@ -139,8 +139,8 @@ impl RowMaker {
             self.row.flags = Some(self.row.flags.unwrap_or_default().with(telemetry.flags));
         }
         if observation.finger.is_some() {
-            self.wanted.add(frictions.wanted_n);
-            self.asked.add(frictions.asked_n);
+            self.reference.add(frictions.reference_n);
+            self.commanded.add(frictions.commanded_n);
             self.felt.add(frictions.felt_n);
             self.natural.add(observation.felt.map(|felt| felt.natural_friction_n));
         }
@@ -150,7 +150,9 @@ impl RowMaker {
     fn begin(&mut self, row_end: u64) {
         self.row_end = row_end;
         self.row = FeltRow::default();
-        for mean in [&mut self.wanted, &mut self.asked, &mut self.felt, &mut self.natural, &mut self.electrode_v2] {
+        for mean in
+            [&mut self.reference, &mut self.commanded, &mut self.felt, &mut self.natural, &mut self.electrode_v2]
+        {
             *mean = Mean::default();
         }
     }
@@ -161,8 +163,8 @@ impl RowMaker {
             x_mm: observation.finger.map(|finger| 1e3 * finger.x_m),
             y_mm: observation.finger.map(|finger| 1e3 * finger.y_m),
             speed_mm_s: observation.finger.map(|finger| 1e3 * finger.speed_m_per_s),
-            wanted_n: self.wanted.value(),
-            asked_n: self.asked.value(),
+            reference_n: self.reference.value(),
+            commanded_n: self.commanded.value(),
             felt_n: self.felt.value(),
             natural_n: self.natural.value(),
             electrode_v_rms: self.electrode_v2.value().map(f64::sqrt),

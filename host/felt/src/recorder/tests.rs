@@ -22,7 +22,7 @@ fn telemetry(tick: u32) -> Telemetry {
         finger_x_m: 0.04,
         finger_y_m: 0.04,
         speed_m_per_s: 0.1,
-        asked_electric_friction_n: 0.01,
+        commanded_electric_friction_n: 0.01,
         voltage_v_rms: tick as f32,
         dac_code: tick as i16,
     }
@@ -74,8 +74,8 @@ fn a_row_has_means_over_its_ticks_and_what_the_board_reported_last() {
     assert_eq!(reported, [Some(102.0), Some(105.0), Some(111.0), None, None]);
     assert!(rows.iter().all(|row| row.flags.is_some() == row.voltage_v_rms.is_some()));
     assert_eq!(rows.iter().map(|row| row.dac_code).collect::<Vec<_>>(), [103, 107, 111, 115, 119].map(Some));
-    assert_eq!(in_mn(rows[0].wanted_n), Some(260_000));
-    assert_eq!(in_mn(rows[0].asked_n), Some(260_000));
+    assert_eq!(in_mn(rows[0].reference_n), Some(260_000));
+    assert_eq!(in_mn(rows[0].commanded_n), Some(260_000));
     let times: Vec<_> = rows.iter().map(|row| (row.t_s * f64::from(TICK_HZ)).round() as u32).collect();
     assert_eq!(times, [4, 8, 12, 16, 20]);
     let summary = recorder.summary();
@@ -98,10 +98,10 @@ fn telemetry_alone_is_a_row_a_message() {
     let times: Vec<_> = rows.iter().map(|row| (1e3 * row.t_s).round() as u32).collect();
     assert_eq!(times, [0, 1, 3]);
     assert!(rows.iter().all(|row| row.felt_n.is_none()), "nobody can say what was felt");
-    assert_eq!(in_mn(rows[2].wanted_n), Some(260_000));
+    assert_eq!(in_mn(rows[2].reference_n), Some(260_000));
     let summary = recorder.summary();
     assert_eq!((summary.ticks, summary.saturated_ticks, summary.friction_error), (120, None, None));
-    assert!(summary.wanted_range_n.is_some());
+    assert!(summary.reference_range_n.is_some());
 }
 
 #[test]
@@ -119,7 +119,10 @@ fn without_a_reference_a_row_still_has_what_was_asked_for_and_felt() {
     recorder.start(0);
     recorder.record(&Observation { telemetry: Some(telemetry(1)), ..simulated(1, 0.27) });
     let row = recorder.rows()[0];
-    assert_eq!((in_mn(row.wanted_n), in_mn(row.asked_n), in_mn(row.felt_n)), (None, Some(260_000), Some(270_000)));
+    assert_eq!(
+        (in_mn(row.reference_n), in_mn(row.commanded_n), in_mn(row.felt_n)),
+        (None, Some(260_000), Some(270_000))
+    );
     assert_eq!(recorder.summary(), MetricsSummary { ticks: 1, ..MetricsSummary::default() });
 }
 
@@ -130,15 +133,15 @@ fn the_reference_of_telemetry_clicks() {
     let mut recorder = recorder(&program, 40);
     let at = |message: u32| Telemetry { finger_x_m: 0.045 + 1e-4 * message as f32, ..telemetry(40 * message) };
     (0..150).for_each(|message| recorder.record(&Observation::from_telemetry(&at(message))));
-    let wanted_mn: Vec<f64> = recorder.rows().iter().map(|row| 1e3 * (row.wanted_n.unwrap() - 0.25)).collect();
-    let crossed = wanted_mn.iter().position(|wanted_mn| *wanted_mn > 9.0).unwrap();
+    let reference_mn: Vec<f64> = recorder.rows().iter().map(|row| 1e3 * (row.reference_n.unwrap() - 0.25)).collect();
+    let crossed = reference_mn.iter().position(|reference_mn| *reference_mn > 9.0).unwrap();
     assert!((48..=53).contains(&crossed), "it clicks at {crossed} ms");
     // The click decreases with the square of the time that remains of its 60 ms.
-    for (ms, wanted_mn) in wanted_mn[crossed + 10..crossed + 60].iter().enumerate() {
+    for (ms, reference_mn) in reference_mn[crossed + 10..crossed + 60].iter().enumerate() {
         let expected_mn = 10.0 * (1.0 - (ms + 10) as f64 / 60.0).powi(2);
-        assert!((wanted_mn - expected_mn).abs() < 1e-3, "{ms}: {wanted_mn} mN is not {expected_mn} mN");
+        assert!((reference_mn - expected_mn).abs() < 1e-3, "{ms}: {reference_mn} mN is not {expected_mn} mN");
     }
-    assert!(wanted_mn[crossed + 60..].iter().chain(&wanted_mn[..crossed - 6]).all(|mn| mn.abs() < 1e-3));
+    assert!(reference_mn[crossed + 60..].iter().chain(&reference_mn[..crossed - 6]).all(|mn| mn.abs() < 1e-3));
 }
 
 /// Streams a ramp of 4,000 samples in a second.
@@ -171,11 +174,11 @@ fn the_reference_of_telemetry_streams() {
             recorder.record(&Observation::from_telemetry(&telemetry));
         }
         let rows = recorder.rows();
-        assert!(rows[..100].iter().all(|row| in_mn(row.wanted_n) == Some(250_000)), "nothing streams yet");
+        assert!(rows[..100].iter().all(|row| in_mn(row.reference_n) == Some(250_000)), "nothing streams yet");
         for row in &rows[115..1_090] {
             let ticks = row.t_s * f64::from(TICK_HZ) - 4_010.0;
-            let (wanted_n, mean_ticks) = (row.wanted_n.unwrap() - 0.25, if period == 1 { 19.5 } else { 0.0 });
-            let off_ticks = (wanted_n - ramp_n(ticks - mean_ticks)) / ramp_n(1.0);
+            let (reference_n, mean_ticks) = (row.reference_n.unwrap() - 0.25, if period == 1 { 19.5 } else { 0.0 });
+            let off_ticks = (reference_n - ramp_n(ticks - mean_ticks)) / ramp_n(1.0);
             assert!(off_ticks.abs() <= tolerance_ticks, "{} s, a tick in {period}: {off_ticks} ticks off", row.t_s);
         }
     }
@@ -189,7 +192,7 @@ fn a_stream_that_began_between_two_messages_is_in_the_reference() {
     stream_ramp(&mut recorder);
     (0..100).for_each(|message| recorder.record(&Observation::from_telemetry(&telemetry(400 * message))));
     let rows = recorder.rows();
-    let last_n = rows[90].wanted_n.unwrap() - 0.25;
+    let last_n = rows[90].reference_n.unwrap() - 0.25;
     let late_s = 0.9 - last_n / ramp_n(f64::from(TICK_HZ));
     assert!((0.0..0.08).contains(&late_s), "{late_s} s late");
 }
@@ -200,7 +203,7 @@ fn a_stream_that_a_board_refused_is_not_in_the_reference() {
     let mut recorder = recorder(&program, 400);
     recorder.stream_started(4_000);
     (0..100).for_each(|message| recorder.record(&Observation::from_telemetry(&telemetry(400 * message))));
-    assert!(recorder.rows().iter().all(|row| in_mn(row.wanted_n) == Some(250_000)));
+    assert!(recorder.rows().iter().all(|row| in_mn(row.reference_n) == Some(250_000)));
 }
 
 #[test]
@@ -209,7 +212,7 @@ fn another_program_is_compared_with_from_then_on() {
     recorder.record(&simulated(1, 0.25));
     recorder.scene_replaced(&program(&CONSTANT.replace("0.26", "0.27")), &LIMITS).unwrap();
     recorder.record(&simulated(2, 0.25));
-    let wanted: Vec<_> = recorder.rows().iter().map(|row| in_mn(row.wanted_n)).collect();
+    let wanted: Vec<_> = recorder.rows().iter().map(|row| in_mn(row.reference_n)).collect();
     assert_eq!(wanted, [Some(260_000), Some(270_000)]);
 }
 
@@ -221,13 +224,16 @@ fn the_reference_goes_through_the_finger_that_felt() {
         recorder.record(&Observation { felt, telemetry: Some(telemetry(tick)), ..simulated(tick, 0.32) });
     }
     for row in &recorder.rows()[..3] {
-        assert_eq!([in_mn(row.wanted_n), in_mn(row.asked_n), in_mn(row.felt_n)], [319_000, 320_000, 320_000].map(Some));
+        assert_eq!(
+            [in_mn(row.reference_n), in_mn(row.commanded_n), in_mn(row.felt_n)],
+            [319_000, 320_000, 320_000].map(Some)
+        );
         assert_eq!((in_mn(row.natural_n), row.electrode_v_rms, row.is_tracked), (Some(310_000), Some(20.0), true));
     }
     let lifted = Felt { finger: None, ..felt(0.0, 0.0) };
     recorder.record(&Observation::of_world(4, &lifted, 0));
     let row = recorder.rows().last().unwrap();
-    assert_eq!((row.wanted_n, row.is_tracked), (None, false), "a lifted finger feels nothing");
+    assert_eq!((row.reference_n, row.is_tracked), (None, false), "a lifted finger feels nothing");
     let error = recorder.summary().friction_error.unwrap();
     assert!((error.rms_n - 1e-3).abs() < 1e-9, "{} N", error.rms_n);
     assert_eq!(recorder.summary().load_mismatch.map(|mismatch| in_mn(Some(mismatch.max_n))), Some(Some(20_000)));
@@ -239,7 +245,7 @@ fn a_recorder_that_is_told_of_a_program_later_compares_from_then_on() {
     recorder.record(&simulated(1, 0.25));
     recorder.scene_replaced(&program(CONSTANT), &LIMITS).unwrap();
     recorder.record(&simulated(2, 0.25));
-    assert_eq!(recorder.rows().iter().map(|row| in_mn(row.wanted_n)).collect::<Vec<_>>(), [None, Some(260_000)]);
+    assert_eq!(recorder.rows().iter().map(|row| in_mn(row.reference_n)).collect::<Vec<_>>(), [None, Some(260_000)]);
 }
 
 #[test]

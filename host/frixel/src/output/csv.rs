@@ -97,7 +97,7 @@ impl<R: CsvRow> CsvFile<R> {
 }
 
 impl CsvRow for FeltRow {
-    const HEADER: &'static str = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags";
+    const HEADER: &'static str = "t_s,x_mm,y_mm,speed_mm_s,reference_n,commanded_n,felt_n,voltage_v_rms,dac_code,flags";
 
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let cell =
@@ -109,8 +109,8 @@ impl CsvRow for FeltRow {
             cell(self.x_mm, 4),
             cell(self.y_mm, 4),
             cell(self.speed_mm_s, 3),
-            cell(self.wanted_n, 9),
-            cell(self.asked_n, 9),
+            cell(self.reference_n, 9),
+            cell(self.commanded_n, 9),
             cell(self.felt_n, 9),
             cell(self.voltage_v_rms, 4)
         )?;

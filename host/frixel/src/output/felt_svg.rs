@@ -60,8 +60,8 @@ fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
 fn friction(spans: &[Span], reach: &Reach) -> (Panel, bool) {
     let felt = spans.iter().any(|span| span.felt_n.is_some());
     let (name, second): (_, Part) =
-        if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.asked_n) };
-    let first: Part = |span| span.wanted_n;
+        if felt { ("felt", |span| span.felt_n) } else { ("commanded", |span| span.commanded_n) };
+    let first: Part = |span| span.reference_n;
     let (natural_mn, most_mn) = (1e3 * reach.friction_min_n(), 1e3 * reach.friction_max_n());
     let drawn = [while_sliding(spans, first), while_sliding(spans, second)].into_iter().flatten();
     let (low, high) = drawn
@@ -309,8 +309,8 @@ mod tests {
         let span = |least: f64| Span {
             start_s: 0.0,
             end_s: 0.0,
-            wanted_n: None,
-            asked_n: None,
+            reference_n: None,
+            commanded_n: None,
             felt_n: Some(Extremes { least, largest: least + 0.01 }),
             voltage_v_rms: None,
             way_mm: 0.0,

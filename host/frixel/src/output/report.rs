@@ -61,9 +61,9 @@ pub(crate) struct Report {
     /// Total friction at the largest voltage, N.
     pub reachable_max_n: f64,
     /// Smallest total reference friction, but for the micrometres after the finger lands or turns, N.
-    pub wanted_min_n: Option<f64>,
+    pub reference_min_n: Option<f64>,
     /// Largest total reference friction, with the same exception, N.
-    pub wanted_max_n: Option<f64>,
+    pub reference_max_n: Option<f64>,
     /// Ticks in which the board clamped its command.
     pub saturated_ticks: Option<u64>,
     /// Number of frames that the host sent.
@@ -178,8 +178,8 @@ impl Report {
             finger_origin: Origin::Assumed.word(),
             reachable_min_n: reach.friction_min_n(),
             reachable_max_n: reach.friction_max_n(),
-            wanted_min_n: metrics.wanted_range_n.map(|(least_n, _)| least_n),
-            wanted_max_n: metrics.wanted_range_n.map(|(_, largest_n)| largest_n),
+            reference_min_n: metrics.reference_range_n.map(|(least_n, _)| least_n),
+            reference_max_n: metrics.reference_range_n.map(|(_, largest_n)| largest_n),
             saturated_ticks: metrics.saturated_ticks,
             frames_sent: link.frames_sent,
             frames_rejected: link.frames_rejected,
@@ -282,7 +282,7 @@ impl Report {
             None => ("", ""),
         };
         line("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
-        if let Some((least, most)) = self.wanted_min_n.zip(self.wanted_max_n) {
+        if let Some((least, most)) = self.reference_min_n.zip(self.reference_max_n) {
             let turns = if self.world.is_some_and(|world| world != Effects::None) {
                 "; not where the finger lands or turns"
             } else {

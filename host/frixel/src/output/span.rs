@@ -31,8 +31,8 @@ pub(crate) struct TracedLayer {
 pub(super) struct Span {
     pub(super) start_s: f64,
     pub(super) end_s: f64,
-    pub(super) wanted_n: Option<Extremes>,
-    pub(super) asked_n: Option<Extremes>,
+    pub(super) reference_n: Option<Extremes>,
+    pub(super) commanded_n: Option<Extremes>,
     pub(super) felt_n: Option<Extremes>,
     pub(super) voltage_v_rms: Option<Extremes>,
     /// Length of the finger's way at the end of the span, mm.
@@ -81,8 +81,8 @@ impl Span {
             off_reason,
             start_s: row.t_s,
             end_s: row.t_s,
-            wanted_n: Extremes::of(row.wanted_n),
-            asked_n: Extremes::of(row.asked_n),
+            reference_n: Extremes::of(row.reference_n),
+            commanded_n: Extremes::of(row.commanded_n),
             felt_n: Extremes::of(row.felt_n),
             voltage_v_rms: Extremes::of(row.voltage_v_rms),
         }
@@ -92,8 +92,8 @@ impl Span {
         Self {
             start_s: self.start_s,
             end_s: later.end_s,
-            wanted_n: Extremes::join(self.wanted_n, later.wanted_n),
-            asked_n: Extremes::join(self.asked_n, later.asked_n),
+            reference_n: Extremes::join(self.reference_n, later.reference_n),
+            commanded_n: Extremes::join(self.commanded_n, later.commanded_n),
             felt_n: Extremes::join(self.felt_n, later.felt_n),
             way_mm: later.way_mm,
             layer: later.layer,

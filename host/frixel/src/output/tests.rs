@@ -45,8 +45,8 @@ fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
             x_mm: Some(x_mm),
             y_mm: Some(y_mm),
             speed_mm_s: Some(50.0),
-            wanted_n: Some(friction_n((x_mm, y_mm))),
-            asked_n: Some(felt_n),
+            reference_n: Some(friction_n((x_mm, y_mm))),
+            commanded_n: Some(felt_n),
             felt_n: Some(felt_n),
             voltage_v_rms: Some(150.0 * ((felt_n - 0.25) / 0.0278).max(0.0).sqrt()),
             dac_code: Some(1000),
@@ -81,8 +81,8 @@ fn csv_bytes() {
             x_mm: Some(12.345_678),
             y_mm: Some(-0.000_04),
             speed_mm_s: Some(100.0),
-            wanted_n: Some(0.25),
-            asked_n: Some(0.263_123_456_7),
+            reference_n: Some(0.25),
+            commanded_n: Some(0.263_123_456_7),
             felt_n: Some(0.262),
             voltage_v_rms: Some(99.999_96),
             dac_code: Some(-12_345),
@@ -99,7 +99,7 @@ fn csv_bytes() {
     csv.into_writer().commit().expect("the end");
     assert_eq!(
         fs::read_to_string(&path).expect("the file"),
-        "t_s,x_mm,y_mm,speed_mm_s,wanted_n,asked_n,felt_n,voltage_v_rms,dac_code,flags\n\
+        "t_s,x_mm,y_mm,speed_mm_s,reference_n,commanded_n,felt_n,voltage_v_rms,dac_code,flags\n\
          0.001000,12.3457,0.0000,100.000,0.250000000,0.263123457,0.262000000,100.0000,-12345,none\n\
          1.500000,,,,,,,,,saturated+still\n\
          2.000000,,,,,,,,,no-finger+0x8000\n\
@@ -126,7 +126,7 @@ fn noisy(rows: usize) -> impl Iterator<Item = FeltRow> {
         t_s: row as f64 * 25e-6,
         x_mm: Some(120.0 * noise(3 * row)),
         y_mm: Some(80.0 * noise(7 * row)),
-        wanted_n: Some(0.25 + 0.03 * noise(row)),
+        reference_n: Some(0.25 + 0.03 * noise(row)),
         felt_n: Some(0.25 + 0.03 * noise(row + 13)),
         voltage_v_rms: Some(150.0 * noise(row + 29)),
         ..FeltRow::default()
@@ -283,7 +283,7 @@ fn vibration(frequency_hz: f64, between_s: std::ops::Range<f64>) -> Vec<FeltRow>
         let t_s = row as f64 * 1e-3;
         let swing = if between_s.contains(&t_s) { (std::f64::consts::TAU * frequency_hz * t_s).sin() } else { 0.0 };
         let friction_n = Some(0.26 + 0.01 * swing);
-        FeltRow { t_s, wanted_n: friction_n, felt_n: friction_n, ..FeltRow::default() }
+        FeltRow { t_s, reference_n: friction_n, felt_n: friction_n, ..FeltRow::default() }
     };
     (0..3_000).map(row).collect()
 }
@@ -402,7 +402,7 @@ const NOTHING: MetricsSummary = MetricsSummary {
     inversion_error: None,
     load_mismatch: None,
     carrier_ripple_rms_n: None,
-    wanted_range_n: None,
+    reference_range_n: None,
 };
 
 #[test]
@@ -417,7 +417,7 @@ fn report_as_json() {
         inversion_error: Some(ErrorSize { rms_n: 1e-6, max_n: 0.00002 }),
         load_mismatch: Some(ErrorSize { rms_n: 0.012, max_n: 0.05 }),
         carrier_ripple_rms_n: Some(0.0005),
-        wanted_range_n: Some((0.25, 0.27)),
+        reference_range_n: Some((0.25, 0.27)),
     };
     assert_eq!(
         report(&known).to_json(),
@@ -425,7 +425,7 @@ fn report_as_json() {
          \"friction_error_rms_n\":0.001,\"friction_error_max_n\":0.005,\
          \"inversion_error_rms_n\":1e-6,\"inversion_error_max_n\":0.00002,\"slewing_ticks\":9,\
          \"load_mismatch_rms_n\":0.012,\"load_mismatch_max_n\":0.05,\"carrier_ripple_rms_n\":0.0005,\
-         \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"wanted_min_n\":0.25,\"wanted_max_n\":0.27,\
+         \"finger_origin\":\"assumed\",\"reachable_min_n\":0.25,\"reachable_max_n\":0.275,\"reference_min_n\":0.25,\"reference_max_n\":0.27,\
          \"saturated_ticks\":7,\"frames_sent\":400,\"frames_rejected\":1,\"payload_bytes\":63000,\"wire_bytes\":65000,\
          \"realtime_factor\":123.4,\"stream_samples\":null,\"stream_underruns\":null,\"stream_gaps\":null,\"in_this_play\":null,\"untouched_layers\":[],\"replaced_at_s\":null}"
     );

@@ -43,8 +43,8 @@ fn layers_are_switched_turned_down_and_triggered() {
     let output = control(folder.path(), lines);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     for (t_ms, expected_mn) in [(190, 260.0), (390, 250.0), (590, 255.0), (690, 250.0), (890, 260.0), (1_000, 250.0)] {
-        let (wanted_mn, felt_mn) = friction_mn(folder.path(), t_ms);
-        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+        let (reference_mn, felt_mn) = friction_mn(folder.path(), t_ms);
+        assert!((reference_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {reference_mn} mN wanted");
         assert!((felt_mn - expected_mn).abs() < 0.5, "{t_ms} ms: {felt_mn} mN felt");
     }
     let svg = fs::read_to_string(folder.path().join("frixel-out/felt.svg")).unwrap();
@@ -67,8 +67,8 @@ fn a_layer_that_starts_off_waits_for_its_trigger_and_stays_as_it_was_switched() 
     let rows =
         [(20, 260.0), (190, 260.0), (390, 350.0), (590, 260.0), (690, 260.0), (790, 340.0), (890, 340.0), (990, 260.0)];
     for (t_ms, expected_mn) in rows {
-        let (wanted_mn, felt_mn) = friction_mn(folder.path(), t_ms);
-        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+        let (reference_mn, felt_mn) = friction_mn(folder.path(), t_ms);
+        assert!((reference_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {reference_mn} mN wanted");
         assert!((felt_mn - expected_mn).abs() < 1.5, "{t_ms} ms: {felt_mn} mN felt");
     }
     assert!(!String::from_utf8_lossy(&output.stdout).contains("never touched"));
@@ -112,8 +112,8 @@ fn a_scene_is_replaced_and_the_play_ended() {
     let replaced_at_s = serde_json::from_str::<serde_json::Value>(&summary).unwrap()["replaced_at_s"].as_f64().unwrap();
     assert!((0.2..0.25).contains(&replaced_at_s), "{replaced_at_s} s");
     for (t_ms, expected_mn) in [(190, 260.0), (590, 270.0), (780, 250.0)] {
-        let (wanted_mn, _) = friction_mn(folder.path(), t_ms);
-        assert!((wanted_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {wanted_mn} mN wanted");
+        let (reference_mn, _) = friction_mn(folder.path(), t_ms);
+        assert!((reference_mn - expected_mn).abs() < 0.1, "{t_ms} ms: {reference_mn} mN wanted");
     }
     let rows = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap().lines().count();
     assert!((800..900).contains(&rows), "it ended after 0.8 s: {rows}");

@@ -38,11 +38,17 @@ fn a_stream_ends_with_its_file_and_counts_as_wanted() {
     assert!((1.5..1.7).contains(&seconds), "{seconds} s");
     assert_eq!((json["stream_samples"].as_u64(), json["stream_underruns"].as_u64()), (Some(3_000), Some(0)));
     // The last sample is 29,980 of 32,767: 0.957 of 20 mN above 250 mN.
-    let wanted_max_n = json["wanted_max_n"].as_f64().unwrap();
-    assert!((wanted_max_n - 0.2691).abs() < 3e-4, "{wanted_max_n} N");
+    let reference_max_n = json["reference_max_n"].as_f64().unwrap();
+    assert!((reference_max_n - 0.2691).abs() < 3e-4, "{reference_max_n} N");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
-    let wanted_n = |row: usize| -> f64 { felt.lines().nth(row).unwrap().split(',').nth(4).unwrap().parse().unwrap() };
-    assert!(wanted_n(800) > 0.255 && wanted_n(1400) > wanted_n(800) + 0.005, "{} {}", wanted_n(800), wanted_n(1400));
+    let reference_n =
+        |row: usize| -> f64 { felt.lines().nth(row).unwrap().split(',').nth(4).unwrap().parse().unwrap() };
+    assert!(
+        reference_n(800) > 0.255 && reference_n(1400) > reference_n(800) + 0.005,
+        "{} {}",
+        reference_n(800),
+        reference_n(1400)
+    );
     // The last rows are after the end of the stream, and with --seconds it ends earlier.
     let (json, _) =
         succeed(folder.path(), &["play", "scene.toml", "--stream", "ramp.wav", "--seconds", "0.5", "--json"]);

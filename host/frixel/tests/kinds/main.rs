@@ -79,7 +79,7 @@ fn disagreeing(case: &Case, rows: &[FeltRow], expected_mn: &[f64]) -> usize {
     let errors = rows.iter().zip(expected_mn);
     errors
         .filter(|(row, expected)| {
-            let error_mn = 1e3 * (row.wanted_n.unwrap() - NATURAL_N) - *expected;
+            let error_mn = 1e3 * (row.reference_n.unwrap() - NATURAL_N) - *expected;
             !(error_mn.abs() <= case.agreement_mn)
         })
         .count()

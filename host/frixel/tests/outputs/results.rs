@@ -30,7 +30,7 @@ fn every_command_writes_what_the_table_says_and_leaves_nothing_else() {
 
 #[test]
 fn no_command_replaces_its_input_a_recording_or_a_protected_file() {
-    let of_a_person = "t_s,x_mm,y_mm,speed_mm_s,wanted_n,felt_n,participant\n0.001,10,20,100,0.3,,P07\n";
+    let of_a_person = "t_s,x_mm,y_mm,speed_mm_s,reference_n,felt_n,participant\n0.001,10,20,100,0.3,,P07\n";
     for (output, line) in runs() {
         let folder = Folder::new();
         for written in output.written.iter().map(|name| name.replace("OUT", "out")) {

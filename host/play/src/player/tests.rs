@@ -15,7 +15,7 @@ struct Line {
     rig: Rig<'static>,
     told: Told,
     /// The largest electric friction that a tick has asked for, N.
-    asked_max_n: f32,
+    commanded_max_n: f32,
 }
 
 /// What a listener is told, a word each.
@@ -58,8 +58,8 @@ impl ByteStream for Line {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let end = self.now() + wait;
         while !self.rig.has_received() && self.now() < end {
-            let asked_n = self.rig.step().status.telemetry.asked_electric_friction_n;
-            self.asked_max_n = self.asked_max_n.max(asked_n);
+            let commanded_n = self.rig.step().status.telemetry.commanded_electric_friction_n;
+            self.commanded_max_n = self.commanded_max_n.max(commanded_n);
         }
         self.rig.receive(buffer);
         Ok(())
@@ -105,7 +105,7 @@ fn line() -> Line {
     let memory = Box::leak(BoardMemory::new());
     let mut rig = Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap();
     rig.world_mut().start_stroke();
-    Line { rig, told: Told::default(), asked_max_n: 0.0 }
+    Line { rig, told: Told::default(), commanded_max_n: 0.0 }
 }
 
 fn start<L: Link + Recorded>(link: L, program: Program) -> Player<L> {
@@ -180,10 +180,10 @@ fn the_recorder_is_told_what_plays() {
 }
 
 /// The largest electric friction asked for since the last call, as a part of the reach.
-fn asked_max(player: &mut Playing) -> f64 {
+fn commanded_max(player: &mut Playing) -> f64 {
     let reach_n = player.playing().unwrap().program().reach.electric_friction_max_n;
     let line = player.device_mut().link_mut().stream_mut();
-    f64::from(std::mem::take(&mut line.asked_max_n)) / reach_n
+    f64::from(std::mem::take(&mut line.commanded_max_n)) / reach_n
 }
 
 /// It is off before a tick can play it, at the first play and after every replacement, whatever its blend.
@@ -192,15 +192,15 @@ fn a_layer_that_starts_off_is_never_played_until_it_is_switched_on() {
     for (blend, on) in [("replace", 0.5), ("add", 0.7), ("multiply", 0.4), ("max", 0.5)] {
         let mut player = playing(off_at_start(blend));
         player.wait(200 * MS).unwrap();
-        let asked = asked_max(&mut player);
+        let asked = commanded_max(&mut player);
         assert!((asked - 0.2).abs() < 1e-3, "{blend}: {asked}");
         player.replace(off_at_start(blend)).unwrap();
         player.wait(20 * MS).unwrap();
-        let asked = asked_max(&mut player);
+        let asked = commanded_max(&mut player);
         assert!((asked - 0.2).abs() < 1e-3, "{blend}: {asked}");
         player.trigger("ping", Some(0.05)).unwrap();
         player.wait(20 * MS).unwrap();
-        let asked = asked_max(&mut player);
+        let asked = commanded_max(&mut player);
         assert!((asked - on).abs() < 1e-3, "{blend}: {asked}");
         assert!(player.playing().unwrap().off().is_empty());
         player.wait(40 * MS).unwrap();
@@ -213,9 +213,9 @@ fn what_was_set_of_a_layer_is_kept_when_the_program_is_replaced() {
     let mut player = playing(off_at_start("add"));
     player.change_layer("ping", Some(true), Some(0.5)).unwrap();
     player.replace(off_at_start("add")).unwrap();
-    asked_max(&mut player);
+    commanded_max(&mut player);
     player.wait(20 * MS).unwrap();
-    let asked = asked_max(&mut player);
+    let asked = commanded_max(&mut player);
     assert!((asked - 0.45).abs() < 1e-3, "{asked}");
     assert_eq!(player.recorder_mut().0, ["layer 1 true 0.5", "scene of 2", "layer 1 true 0.5"]);
     // The page shows a scene as it is written.
@@ -230,7 +230,7 @@ fn a_board_that_is_armed_by_hand_plays_nothing_of_a_layer_that_starts_off() {
     player.replace(off_at_start("replace")).unwrap();
     player.arm_and_play().unwrap();
     player.wait(200 * MS).unwrap();
-    let asked = asked_max(&mut player);
+    let asked = commanded_max(&mut player);
     assert!((asked - 0.2).abs() < 1e-3, "{asked}");
     assert_eq!(player.playing().unwrap().off(), [1]);
 }

@@ -169,7 +169,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made, participant)
 
     def _repr_html_(self) -> str:
-        lines = {"wanted_n": ("#888", self["wanted_n"]), "felt_n": ("#c33", self["felt_n"])}
+        lines = {"reference_n": ("#888", self["reference_n"]), "felt_n": ("#c33", self["felt_n"])}
         return f"<p>{escape(repr(self)[1:-1])}</p>" + _display.chart(self["t_s"], lines, ("friction, N,", "time, s,"))
 
     def __repr__(self) -> str:

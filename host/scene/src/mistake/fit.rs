@@ -46,7 +46,7 @@ pub enum FitMistake {
     },
     /// The target friction of a layer is more than the drive can give.
     #[error(
-        "{asking} up to {asked_n} N {reference}{}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
+        "{asking} up to {target_n} N {reference}{}, and at {voltage_v_rms} V rms this finger feels at most {reach_n} N \
          {reference}: {}{cure}, {}or write `saturate = true` under [drive] to have it clamped",
         .part_of_reach.map_or(String::new(), |part| format!(" ({part} of the reach)")),
         if *.may_be_millinewtons { "were mN meant? 1 mN is 0.001 N; " } else { "" },
@@ -56,7 +56,7 @@ pub enum FitMistake {
         /// The layer or layers, with the verb.
         asking: String,
         /// The layers' target friction, N.
-        asked_n: f64,
+        target_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
         /// The target as a part of what can be reached, if the layers' amounts are fractions.
@@ -75,14 +75,14 @@ pub enum FitMistake {
     },
     /// The target friction of a layer is less than the friction at no voltage.
     #[error(
-        "{asking} down to {asked_n} N {reference}, and a drive can only add to the finger's natural friction of \
+        "{asking} down to {target_n} N {reference}, and a drive can only add to the finger's natural friction of \
          {natural_n} N: {cure}, or write `saturate = true` under [drive] to have it clamped"
     )]
     BelowNatural {
         /// The layer or layers, with the verb.
         asking: String,
         /// The layers' target friction, N.
-        asked_n: f64,
+        target_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
         /// Friction at no voltage, N.

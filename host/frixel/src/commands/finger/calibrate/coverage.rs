@@ -73,10 +73,10 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
 /// What a board that drives 150 V rms adds to the friction of a person in steady sliding under a load, in newtons.
 fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     // What the scene's finger has at 150 V, a little less, so that rounding stays within reach.
-    let asked_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
+    let target_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
     let scene = format!(
         "version = 1\ndrive = {{ voltage_max_v_rms = 150 }}\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
-         above = \"natural\"\nfriction_n = {asked_n}\n"
+         above = \"natural\"\nfriction_n = {target_n}\n"
     );
     let scene = Scene::parse(&scene, "steady", &BTreeMap::new()).unwrap();
     let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap();
