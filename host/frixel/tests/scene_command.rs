@@ -167,10 +167,10 @@ fn the_table_ends_where_the_scene_does_unless_a_layer_may_change() {
     assert_eq!(table("friction_fraction = 0.499\nlive = true"), [whole, whole, room]);
 
     let path = files.path("scene.toml");
-    let said = succeed(&repository(), &["check", &path]);
+    let said = succeed(&repository(), &["check", &path, "--cost"]);
     assert!(said.contains("nothing is cut"), "{said}");
     files.check(&constant("friction_fraction = 0.495"));
-    let said = succeed(&repository(), &["check", &path]);
+    let said = succeed(&repository(), &["check", &path, "--cost"]);
     assert!(said.contains(&format!("{} of {whole} bytes computed, 4 rows are cut", whole - 64)), "{said}");
 }
 
@@ -322,7 +322,7 @@ fn check_and_preview_say_what_a_person_feels() {
     let scene = files.scene(&format!("{grating}above = \"zero\"\n"));
     let text = succeed(&repository(), &["check", &scene]);
     let feel = text.lines().find(|line| line.trim_start().starts_with("felt ")).unwrap();
-    assert!(feel.contains("layer 1 \"ridges\": ") && feel.contains(" Hz, felt from about "), "{feel}");
+    assert!(feel.contains("layer 1 \"ridges\": ") && feel.contains(" times the smallest that is felt ("), "{feel}");
     assert!(succeed(&repository(), &["preview", &scene, "-o", &files.path("map.png")]).contains(feel));
     // A touch source that keeps up with a millimetre: the one of 100 reports a second blurs a third of it.
     let arguments = ["check", &scene, "--json", "--touch", "500"];

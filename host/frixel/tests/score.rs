@@ -90,31 +90,35 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     assert_eq!(json["touch_source"]["latency_ms"].as_f64(), Some(10.0));
     let said = "a verdict on 1 simulated finger in 4 plays";
     assert!(svg.contains(said) && json["simulated"].as_str().unwrap().starts_with(said), "{json}");
-    assert_eq!(json["verdict"], "the simulated finger notices every layer");
+    assert_eq!(json["verdict"], "1 of 1 layer is noticed by the simulated finger");
 }
 
-/// The lines of a score of a scene by two people, each with its name.
+/// The lines of a score of a scene, each with its name; the first one is the verdict.
 fn lines(scene: &str, more: &[&str]) -> Vec<(String, String)> {
     let out = tempfile::tempdir().unwrap();
     let file = out.path().join("scene.toml");
     std::fs::write(&file, scene).unwrap();
     let text = score(out.path(), &file, &[&["--strokes", "1", "--seeds", "1"], more].concat());
+    let (verdict, rest) = text.split_once('\n').unwrap();
     let line = |line: &str| (line[2..32].trim_end().to_owned(), line[32..].trim_start().to_owned());
-    text.lines().map(line).collect()
+    [(verdict.trim().to_owned(), String::new())].into_iter().chain(rest.lines().map(line)).collect()
 }
 
 /// A plate is one friction everywhere: there are no ratios to its changes, and nothing to notice.
 #[test]
 fn a_plate_has_no_ratios_and_is_not_noticed() {
-    let lines = lines("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n", &["--people", "2"]);
+    let lines = lines(
+        "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n",
+        &["--people", "2", "--fidelity"],
+    );
     let names: Vec<&str> = lines.iter().map(|(name, _)| name.as_str()).collect();
     for ratio in ["error, 0 to 400 Hz", "correlation, 0 to 400 Hz", "contrast kept", "delay", "peak dF/dt kept"] {
         assert!(!names.contains(&ratio), "{lines:?}");
     }
     let (_, row) = lines.iter().find(|(name, _)| name == "layer 1 (constant)").unwrap();
     assert_eq!(row, "felt by 0 of 2; contrast 0.0 Weber steps");
-    let (_, verdict) = lines.iter().find(|(name, _)| name == "verdict").unwrap();
-    assert_eq!(verdict, "there is no layer that 2 of 2 simulated fingers notice: layer 1 (constant) by 0");
+    let verdict = "0 of 1 layer is noticed by 2 of 2 simulated fingers; noticed by fewer: layer 1 (constant) by 0";
+    assert_eq!(lines[0].0, verdict);
 }
 
 /// Two plates beside one another are noticed, and their levels are told apart as far as these differ.

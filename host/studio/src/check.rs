@@ -60,7 +60,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         "problems": problems,
         "screen": screen(&scene),
         "layers": layers(&scene, &request.entry, &program, &check.judgement),
-        "report": format!("{draft}{}", check.summary()),
+        "report": format!("{draft}{}", check.summary(true)),
         "lowN": check.targets.least_n,
         "highN": check.targets.most_n,
         "reachN": check.reach.total_max_n,

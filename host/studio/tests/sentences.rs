@@ -27,7 +27,7 @@ fn the_report_is_that_of_the_command() {
         let costs = board_costs(&program, &rig).unwrap();
         let judged = judged_rig(rig.board, TouchConfig::REALISTIC);
         let judgement = judge(&program, &judged, Advice::Sought, TO_THE_END).unwrap();
-        let expected = SceneCheck::of(&program, &rig.board.limits, &costs, judgement).summary();
+        let expected = SceneCheck::of(&program, &rig.board.limits, &costs, judgement).summary(true);
         let answer = check(&request);
         assert_eq!(answer["report"], expected, "{}: {answer}", request.entry);
         assert_eq!(answer["ok"], true);

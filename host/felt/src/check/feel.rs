@@ -3,8 +3,8 @@
 use frixel_scene::LayerTitle;
 
 use crate::judge::{
-    AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, Over, Reason, SizeLimit, Step, Texture,
-    VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
+    AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, NAMED_MAX, Over, Reason, SizeLimit, Step,
+    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
 };
 
 /// Rows of a terminal with lines on the elements of a scene; more are counted in one line. With the costs, all fits 40
@@ -13,8 +13,6 @@ const ROWS_MAX: usize = 18;
 /// Characters of a row, and those before a line's text.
 const ROW_CHARS: usize = 80;
 const NAME_CHARS: usize = 19;
-/// Layers that a line names; more are counted.
-const NAMES_MAX: usize = 3;
 /// Lines on layers that are alike; more are counted in one line.
 const ALIKE_LINES_MAX: usize = 2;
 
@@ -98,8 +96,8 @@ impl Group {
             let Finding { layer, part, .. } = element;
             if *copies == 0 { format!("{part}{layer}") } else { format!("{part}{layer} and {copies} alike") }
         };
-        let members: Vec<String> = self.members.iter().take(NAMES_MAX).map(member).collect();
-        let more = match self.members.len().saturating_sub(NAMES_MAX) {
+        let members: Vec<String> = self.members.iter().take(NAMED_MAX).map(member).collect();
+        let more = match self.members.len().saturating_sub(NAMED_MAX) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
@@ -217,10 +215,11 @@ fn texture_text(texture: &Texture) -> String {
         Some(_) if *verdict == Verdict::Unknown => {
             format!("less than the finger's own noise of about {} mN", two_digits(1e3 * natural_noise_n))
         }
-        Some(range_n) => {
-            let [least, about, most] = range_n.map(|threshold_n| two_digits(1e3 * threshold_n));
-            format!("felt from about {about} mN, {least} to {most}")
-        }
+        Some([_, threshold_n, _]) => format!(
+            "about {} times the smallest that is felt ({} mN, known within a factor of {THRESHOLD_UNCERTAINTY})",
+            two_digits(amplitude_n / threshold_n),
+            two_digits(1e3 * threshold_n)
+        ),
     };
     let (amplitude, frequency) = (two_digits(1e3 * amplitude_n), two_digits(*frequency_hz));
     format!("{amplitude} mN at {frequency} Hz, {threshold}")

@@ -1,85 +1,101 @@
-//! The costs of a scene as text.
-
-use std::fmt::Write;
+//! A check as text.
 
 use frixel_model::InverseTable;
 
 use super::{RamBytes, SceneCheck, feel};
-use frixel_scene::{Origin, OutOfReach};
+use crate::judge::NAMED_MAX;
+use frixel_scene::{Origin, OutOfReach, TargetRange};
 
 impl SceneCheck {
-    /// The costs as a few lines of text, each ending in a line feed.
-    pub fn summary(&self) -> String {
-        let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {name:<16} {value}");
-        };
-        let Self { wire, ram, tick, finger, reach, targets, .. } = self;
-        line("layers", self.layers.to_string());
-        line(
-            "wire",
-            format!(
-                "{} bytes: scene {}, pictures {}, framing {}",
-                wire.total_bytes, wire.scene_bytes, wire.bitmap_bytes, wire.framing_bytes
-            ),
-        );
-        line(
-            "ram",
-            format!(
-                "pictures {} of {} bytes, layers {} bytes",
-                ram.bitmap_pool_bytes, ram.bitmap_pool_limit_bytes, ram.active_bytes
-            ),
-        );
-        line("table", table(ram));
-        line(
-            "tick",
-            format!(
-                "about {} of {} cycles at most, near x {} mm, y {} mm{}",
-                tick.cycles,
-                tick.cycles_limit,
-                tick.x_mm,
-                tick.y_mm,
-                if tick.layers.is_empty() { String::new() } else { format!(": {}", tick.layers.join(", ")) }
-            ),
-        );
-        line("finger", format!("{}, {}", finger.title, finger.origin));
-        let suffix = Origin::newtons_suffix_of(finger.origin);
-        // A limit is rounded down, and what is below it never above.
-        let total_max_n = rounded_down(reach.total_max_n);
-        line(
-            "reachable",
-            format!(
-                "{:.4} to {:.4} N in total, up to {:.4} N above natural (at {:.1} V rms){suffix}",
-                reach.natural_n.min(total_max_n),
-                total_max_n,
-                rounded_down(reach.electric_max_n),
-                reach.voltage_max_v_rms
-            ),
-        );
-        // The limit is printed rounded down: round a target within reach down as well, so that it is not above.
-        let most_n = if targets.above.screen_percent <= 0.0 { rounded_down(targets.most_n) } else { targets.most_n };
-        line("targets", format!("{:.4} to {most_n:.4} N in total{suffix}", targets.least_n.min(most_n)));
-        line("out of reach", out_of_reach(&targets.above, &targets.below));
-        for warning in &self.warnings {
-            line("warning", warning.clone());
-        }
-        for (name, text) in feel::lines(&self.judgement) {
-            line(name, text);
-        }
-        for note in &self.notes {
-            line("note", note.clone());
-        }
-        for left_out in &self.left_out {
-            line("optimised away", left_out.clone());
+    /// The check as a few lines of text, each ending in a line feed: what is felt, which newtons that means, and whether
+    /// the scene fits the board. With `with_costs`, every number of bytes and cycles follows.
+    pub fn summary(&self, with_costs: bool) -> String {
+        let mut lines = feel::lines(&self.judgement);
+        lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        lines.extend(self.notes.iter().map(|note| ("note", note.clone())));
+        lines.extend(self.left_out.iter().map(|left_out| ("optimised away", left_out.clone())));
+        lines.extend(out_of_reach(&self.targets).map(|text| ("out of reach", text)));
+        lines.extend(self.newtons());
+        lines.push(self.fits());
+        if with_costs {
+            lines.extend(self.costs());
         }
         if let Some(board) = &self.board {
             let features = if board.features.is_empty() { "none".to_owned() } else { board.features.join(", ") };
-            line("features", features);
-            line("build", board.command.clone());
+            lines.extend([("features", features), ("build", board.command.clone())]);
         }
-        text
+        lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"))
     }
+
+    /// The finger, what can be reached on it, and what the scene targets.
+    fn newtons(&self) -> [(&'static str, String); 3] {
+        let Self { finger, reach, targets, .. } = self;
+        let suffix = Origin::newtons_suffix_of(finger.origin);
+        // A limit is rounded down, and what is below it never above.
+        let total_max_n = rounded_down(reach.total_max_n);
+        let reachable = format!(
+            "{:.4} to {total_max_n:.4} N in total, up to {:.4} N above natural (at {:.1} V rms){suffix}",
+            reach.natural_n.min(total_max_n),
+            rounded_down(reach.electric_max_n),
+            reach.voltage_max_v_rms
+        );
+        // The limit is printed rounded down: round a target within reach down as well, so that it is not above.
+        let most_n = if targets.above.screen_percent <= 0.0 { rounded_down(targets.most_n) } else { targets.most_n };
+        let targets = format!("{:.4} to {most_n:.4} N in total{suffix}", targets.least_n.min(most_n));
+        [("finger", format!("{}, {}", finger.title, finger.origin)), ("reachable", reachable), ("targets", targets)]
+    }
+
+    /// Whether the board has the cycles and the memory, and which part of them the scene takes.
+    fn fits(&self) -> (&'static str, String) {
+        let Self { tick, ram, wire, .. } = self;
+        let is_within =
+            tick.cycles <= tick.cycles_limit && ram.bitmap_pool_bytes as u64 <= u64::from(ram.bitmap_pool_limit_bytes);
+        let cycles_percent = 100.0 * f64::from(tick.cycles) / f64::from(tick.cycles_limit);
+        let pictures = match ram.bitmap_pool_bytes {
+            0 => "no pictures".to_owned(),
+            bytes => format!("{} of {} of pictures", kilobytes(bytes), kilobytes(ram.bitmap_pool_limit_bytes as usize)),
+        };
+        let text = format!(
+            "{cycles_percent:.0} % of the cycles that a tick may take, {pictures}, {} to send",
+            kilobytes(wire.total_bytes)
+        );
+        (if is_within { "fits" } else { "does not fit" }, text)
+    }
+
+    fn costs(&self) -> [(&'static str, String); 5] {
+        let Self { wire, ram, tick, .. } = self;
+        let layers = if tick.layers.is_empty() { String::new() } else { format!(": {}", named(&tick.layers)) };
+        [
+            ("layers", self.layers.to_string()),
+            (
+                "wire",
+                format!(
+                    "{} bytes: scene {}, pictures {}, framing {}",
+                    wire.total_bytes, wire.scene_bytes, wire.bitmap_bytes, wire.framing_bytes
+                ),
+            ),
+            (
+                "ram",
+                format!(
+                    "pictures {} of {} bytes, layers {} bytes",
+                    ram.bitmap_pool_bytes, ram.bitmap_pool_limit_bytes, ram.active_bytes
+                ),
+            ),
+            ("table", table(ram)),
+            (
+                "tick",
+                format!(
+                    "about {} of {} cycles at most, near x {} mm, y {} mm{layers}",
+                    tick.cycles, tick.cycles_limit, tick.x_mm, tick.y_mm
+                ),
+            ),
+        ]
+    }
+}
+
+/// A number of bytes in kB.
+fn kilobytes(bytes: usize) -> String {
+    format!("{:.1} kB", 1e-3 * bytes as f64)
 }
 
 /// A limit in newtons with four digits after the point, which is itself within the limit.
@@ -98,12 +114,23 @@ fn table(ram: &RamBytes) -> String {
     format!("{table_bytes} of {table_whole_bytes} bytes computed, {cut}; {table_room_bytes} bytes are reserved")
 }
 
-fn out_of_reach(above: &OutOfReach, below: &OutOfReach) -> String {
+/// What of the targets is out of reach, and is clamped.
+fn out_of_reach(targets: &TargetRange) -> Option<String> {
     let part = |outside: &OutOfReach, what: &str| {
         let OutOfReach { screen_percent, layers } = outside;
         let percent = if *screen_percent < 0.1 { "less than 0.1".to_owned() } else { format!("{screen_percent:.1}") };
-        (*screen_percent > 0.0).then(|| format!("{percent} % of the screen {what}, by {}", layers.join(", ")))
+        (*screen_percent > 0.0).then(|| format!("{percent} % of the screen {what}, by {}", named(layers)))
     };
-    let parts: Vec<String> = [part(above, "above"), part(below, "below natural")].into_iter().flatten().collect();
-    if parts.is_empty() { "nothing".to_owned() } else { format!("{}; clamped", parts.join("; ")) }
+    let parts = [part(&targets.above, "above"), part(&targets.below, "below natural")];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("{}; clamped", parts.join("; ")))
+}
+
+/// At most three layers by their names, and how many more there are.
+fn named(layers: &[String]) -> String {
+    let named = layers.iter().take(NAMED_MAX).cloned().collect::<Vec<String>>().join(", ");
+    match layers.len().saturating_sub(NAMED_MAX) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
 }

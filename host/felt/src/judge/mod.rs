@@ -32,8 +32,8 @@ use std::cmp::Ordering;
 
 use frixel_hil_sim::Stroke;
 use frixel_layers::{Layer, Stream};
-use frixel_scene::Program;
 use frixel_scene::reference::Reference;
+use frixel_scene::{LayerTitle, Program, fold_copies};
 
 use crate::GoesOn;
 use crate::fidelity::FidelitySample;
@@ -198,6 +198,9 @@ fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
     }
 }
 
+/// Most layers that a sentence names; more are counted.
+pub(crate) const NAMED_MAX: usize = 3;
+
 /// A slower finger rests, as for the board, m/s: friction does not follow the scene before it slides.
 const SLIDE_MIN_M_PER_S: f64 = 2e-3;
 
@@ -293,6 +296,22 @@ impl Measured {
     }
 }
 
+/// Which layers start off, and how to play one; `None` if all start on.
+pub fn starts_off(program: &Program) -> Option<String> {
+    let off = program.titles.iter().zip(&program.start).filter(|(_, setting)| !setting.on);
+    let titles: Vec<&LayerTitle> = off.map(|(title, _)| title).collect();
+    let number = titles.first()?.number();
+    let mut named = fold_copies(&titles);
+    let starts = if titles.len() == 1 { "starts" } else { "start" };
+    let more = named.len().saturating_sub(NAMED_MAX);
+    named.truncate(NAMED_MAX);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    Some(format!(
+        "{}{more} {starts} off: the line `trigger {number}` plays it (frixel play --control)",
+        named.join(", ")
+    ))
+}
+
 fn notes(program: &Program) -> Vec<String> {
     let changes = Reference::new(program).changes_by_itself();
     let still = changes.then(|| {
@@ -301,5 +320,5 @@ fn notes(program: &Program) -> Vec<String> {
             .to_owned()
     });
     let empty = program.records.is_empty().then(|| "the scene has no layer: there is nothing to feel".to_owned());
-    still.into_iter().chain(empty).collect()
+    still.into_iter().chain(empty).chain(starts_off(program)).collect()
 }

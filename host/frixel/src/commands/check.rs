@@ -1,4 +1,4 @@
-//! `frixel check`: prints the cost of a scene and the friction that can be felt of it.
+//! `frixel check`: prints what can be felt of a scene, and what it costs.
 
 use std::path::PathBuf;
 
@@ -35,6 +35,9 @@ pub(super) struct CheckArgs {
     /// touch bound leaves (`frixel board safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
+    /// Also print the bytes and cycles behind *fits*.
+    #[arg(long)]
+    cost: bool,
     /// Also report the smallest firmware build that plays it.
     #[arg(long)]
     image: bool,
@@ -79,7 +82,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     if board.is_some() {
         print(board_line(&rig.board, &program, verdict(&rig.board, &program)))?;
     }
-    print(check.summary())
+    print(check.summary(args.cost))
 }
 
 /// The board behind another resistance, if there is one.

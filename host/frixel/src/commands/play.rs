@@ -60,6 +60,9 @@ pub(super) struct PlayArgs {
     /// Also replace what a finger did on a real board.
     #[arg(long)]
     overwrite: bool,
+    /// Also print the world, every error, and the ticks and bytes.
+    #[arg(long)]
+    verbose: bool,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
@@ -119,6 +122,7 @@ impl PlayArgs {
             seconds: None,
             out: out.to_owned(),
             overwrite: false,
+            verbose: false,
             json: false,
             seed: 1,
             touch: TouchArgs::default(),
@@ -204,12 +208,12 @@ fn finish(args: &PlayArgs, played: Played) -> Result<()> {
 
 fn print(args: &PlayArgs, Played { report, files, .. }: &Played) -> Result<()> {
     if args.record.as_deref() == Some(Path::new("-")) {
-        note(report.summary());
+        note(report.summary(args.verbose));
         return Ok(());
     }
     if args.json {
         return print_line(report.to_json());
     }
-    terminal::print(report.summary())?;
-    files.iter().try_for_each(|file| print_line(format_args!("  {:<16} {}", "wrote", file.display())))
+    files.iter().try_for_each(|file| print_line(format_args!("  {:<16} {}", "wrote", file.display())))?;
+    terminal::print(report.summary(args.verbose))
 }

@@ -55,6 +55,9 @@ pub(super) struct ScoreArgs {
     /// Folder for score.csv, score-layers.csv and score.svg.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
+    /// Also print how faithfully friction was felt, with the goals of a display.
+    #[arg(long)]
+    fidelity: bool,
     /// Print one JSON object in place of the table.
     #[arg(long)]
     json: bool,
@@ -81,7 +84,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     if args.json {
         return print_line(format_args!("{}", score.to_json()));
     }
-    for line in score.summary().lines() {
+    for line in score.summary(args.fidelity).lines() {
         print_line(format_args!("{line}"))?;
     }
     for file in [csv, layers, svg] {

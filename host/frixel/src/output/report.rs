@@ -1,7 +1,6 @@
 //! The results of a run, for programs and for people.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 use serde::{Serialize, Serializer};
@@ -85,6 +84,12 @@ pub(crate) struct Report {
     /// What the finger felt of each layer on which it slid in the first minute of this play while the board drove;
     /// `null` if something changed the scene while it played, and on a board at a port.
     pub in_this_play: Option<Vec<LayerVerdict>>,
+    /// Why there are no verdicts.
+    #[serde(skip)]
+    pub no_verdict: Option<&'static str>,
+    /// Which layers start off, and what switches them on, if some do.
+    #[serde(skip)]
+    pub starts_off: Option<String>,
     /// Whether the play went on after what was judged.
     #[serde(skip)]
     pub is_judged_in_part: bool,
@@ -191,6 +196,8 @@ impl Report {
             stream_gaps: None,
             in_this_play: None,
             is_judged_in_part: false,
+            no_verdict: None,
+            starts_off: None,
             untouched_layers: Vec::new(),
             replaced_at_s: None,
             files: BTreeMap::new(),
@@ -240,6 +247,14 @@ impl Report {
         Self { in_this_play, is_judged_in_part: seconds > JUDGED_MAX_S, ..self }
     }
 
+    /// Says that there are no verdicts because something changed the scene, and which layers started off.
+    #[must_use]
+    pub(crate) fn with_changes(self, is_changed: bool, starts_off: Option<String>) -> Self {
+        // A scene that was changed may have switched them on.
+        let no_verdict = is_changed.then_some("something changed the scene while it played");
+        Self { no_verdict, starts_off: starts_off.filter(|_| !is_changed), ..self }
+    }
+
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
     /// another one, if it did.
     #[must_use]
@@ -253,27 +268,35 @@ impl Report {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// The report as a few lines of text, each ending in a line feed. Errors are also given relative to the reachable
-    /// electric range.
-    pub(crate) fn summary(&self) -> String {
-        let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "  {name:<16} {value}");
-        };
-        if self.draft {
-            line("draft", draft_line(self.board_refuses.len()));
+    /// The report as a few lines of text, each ending in a line feed. The last lines are what the finger felt and how far
+    /// that was from the reference; with `verbose`, all else comes before them.
+    pub(crate) fn summary(&self, verbose: bool) -> String {
+        let mut lines = Vec::new();
+        lines.extend(self.draft.then(|| ("draft", draft_line(self.board_refuses.len()))));
+        if verbose {
+            lines.extend(self.world_lines());
+            lines.extend(self.friction_lines());
+            lines.extend(self.board_lines());
         }
-        if let Some(world) = self.world {
+        lines.extend(self.stream_line().filter(|_| verbose || self.stream_has_holes()));
+        lines.extend(self.felt_lines());
+        lines.extend(self.error_line("friction error", size(self.friction_error_rms_n, self.friction_error_max_n)));
+        lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"))
+    }
+
+    fn world_lines(&self) -> Vec<Line> {
+        let world = self.world.map(|world| {
             let (name, what) = world.words();
-            line("world", format!("{name}: {what}"));
-        }
-        if let Some(source) = self.touch_source {
-            line("touch source", source.to_string());
-        }
-        if let Some(seed) = self.finger_seed {
-            line("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"));
-        }
+            ("world", format!("{name}: {what}"))
+        });
+        let source = self.touch_source.map(|source| ("touch source", source.to_string()));
+        let finger = self.finger_seed.map(|seed| {
+            ("finger", format!("random person {seed}, assumed; the board computes for the scene's finger"))
+        });
+        [world, source, finger].into_iter().flatten().collect()
+    }
+
+    fn friction_lines(&self) -> Vec<Line> {
         let suffix = Origin::newtons_suffix_of(self.finger_origin);
         let range = |least: f64, most: f64| format!("{:.2} to {:.2} mN{suffix}", 1e3 * least, 1e3 * most);
         let mismatch = size(self.load_mismatch_rms_n, self.load_mismatch_max_n).filter(|error| error.max_n > 0.0);
@@ -281,33 +304,33 @@ impl Report {
             Some(_) => (", at the load of the scene's finger", ", at the load of the finger that plays"),
             None => ("", ""),
         };
-        line("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
-        if let Some((least, most)) = self.reference_min_n.zip(self.reference_max_n) {
-            let turns = if self.world.is_some_and(|world| world != Effects::None) {
-                "; not where the finger lands or turns"
-            } else {
-                ""
-            };
-            line("reference", format!("{}{with_load}{turns}", range(least, most)));
-        }
-        let electric_n = self.reachable_max_n - self.reachable_min_n;
-        for (name, error) in [
-            ("friction error", size(self.friction_error_rms_n, self.friction_error_max_n)),
-            ("inversion error", size(self.inversion_error_rms_n, self.inversion_error_max_n)),
-        ] {
-            if let Some(ErrorSize { rms_n, max_n }) = error {
-                let part = |newtons: f64| 100.0 * newtons / electric_n;
-                let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
-                line(name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", part(rms_n), part(max_n)));
-            }
-        }
-        if let Some(ErrorSize { rms_n, max_n }) = mismatch {
+        let reachable = ("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
+        let reference = self.reference_min_n.zip(self.reference_max_n).map(|(least, most)| {
+            let is_ideal = self.world.is_none_or(|world| world == Effects::None);
+            let turns = if is_ideal { "" } else { "; not where the finger lands or turns" };
+            ("reference", format!("{}{with_load}{turns}", range(least, most)))
+        });
+        let inversion = size(self.inversion_error_rms_n, self.inversion_error_max_n);
+        let mismatch = mismatch.map(|ErrorSize { rms_n, max_n }| {
             let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
-            line("load mismatch", format!("{in_mn}, for another load than the profile's; not in the friction error"));
-        }
-        if let Some(ripple_n) = self.carrier_ripple_rms_n {
-            line("carrier ripple", format!("{:.4} mN rms", 1e3 * ripple_n));
-        }
+            ("load mismatch", format!("{in_mn}, for another load than the profile's; not in the friction error"))
+        });
+        let ripple = self.carrier_ripple_rms_n.map(|rms_n| ("carrier ripple", format!("{:.4} mN rms", 1e3 * rms_n)));
+        [Some(reachable), reference, self.error_line("inversion error", inversion), mismatch, ripple]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+
+    /// An error, also relative to the reachable electric range.
+    fn error_line(&self, name: &'static str, error: Option<ErrorSize>) -> Option<Line> {
+        let ErrorSize { rms_n, max_n } = error?;
+        let percent = |newtons: f64| 100.0 * newtons / (self.reachable_max_n - self.reachable_min_n);
+        let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
+        Some((name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", percent(rms_n), percent(max_n))))
+    }
+
+    fn board_lines(&self) -> Vec<Line> {
         let saturated = self.saturated_ticks.map(|ticks| format!(", of which saturated {ticks}"));
         let unreported = match self.unreported_ticks {
             0 => String::new(),
@@ -317,43 +340,57 @@ impl Report {
             None | Some(0) => String::new(),
             Some(ticks) => format!(", at the slew limit {ticks} (no inversion error)"),
         };
-        line("ticks", format!("{}{}{slewing}{unreported}", self.ticks, saturated.unwrap_or_default()));
-        line(
-            "link",
-            format!(
-                "{} frames sent, {} rejected, {} payload bytes in {}",
-                self.frames_sent, self.frames_rejected, self.payload_bytes, self.wire_bytes
-            ),
+        let ticks = format!("{}{}{slewing}{unreported}", self.ticks, saturated.unwrap_or_default());
+        let link = format!(
+            "{} frames sent, {} rejected, {} payload bytes in {}",
+            self.frames_sent, self.frames_rejected, self.payload_bytes, self.wire_bytes
         );
-        if let (Some(samples), Some(underruns), Some(gaps)) =
-            (self.stream_samples, self.stream_underruns, self.stream_gaps)
-        {
-            line("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps"));
+        let speed = self.realtime_factor.map(|factor| {
+            let decimals = if factor < 10.0 { 2 } else { 0 };
+            ("speed", format!("{factor:.decimals$} times real time"))
+        });
+        [("ticks", ticks), ("link", link)].into_iter().chain(speed).collect()
+    }
+
+    fn stream_line(&self) -> Option<Line> {
+        let (samples, underruns, gaps) = (self.stream_samples?, self.stream_underruns?, self.stream_gaps?);
+        Some(("stream", format!("{samples} samples, {underruns} underruns, {gaps} gaps")))
+    }
+
+    fn stream_has_holes(&self) -> bool {
+        self.stream_underruns.is_some_and(|count| count > 0) || self.stream_gaps.is_some_and(|count| count > 0)
+    }
+
+    /// What the finger felt of each layer, or why there is no verdict.
+    fn felt_lines(&self) -> Vec<Line> {
+        let verdicts = self.in_this_play.as_deref();
+        let no_verdict = match verdicts {
+            Some([]) => Some("the finger slid on no layer while the board drove"),
+            _ => self.no_verdict,
+        };
+        let no_verdict = no_verdict.map(|why| ("in this play", format!("no verdict: {why}")));
+        let mut lines: Vec<Line> = no_verdict.into_iter().collect();
+        let judgement = Judgement { layers: verdicts.unwrap_or_default().to_vec(), ..Judgement::default() };
+        lines.extend(feel::lines(&judgement).into_iter().map(|(name, text)| match name {
+            "more" | "note" => (name, text),
+            verdict => ("in this play", format!("{verdict}: {text}")),
+        }));
+        if verdicts.is_some() && self.is_judged_in_part {
+            lines.push(("note", format!("verdicts in this play are of its first {JUDGED_MAX_S} s")));
         }
-        if let Some(layers) = &self.in_this_play {
-            for (name, text) in feel::lines(&Judgement { layers: layers.clone(), ..Judgement::default() }) {
-                match name {
-                    "more" | "note" => line(name, text),
-                    verdict => line("in this play", format!("{verdict}: {text}")),
-                }
-            }
-            if self.is_judged_in_part {
-                line("note", format!("verdicts in this play are of its first {JUDGED_MAX_S} s"));
-            }
-        }
+        lines.extend(self.starts_off.iter().map(|text| ("note", text.clone())));
         if !self.untouched_layers.is_empty() {
             let since = |t_s: f64| format!("; since {t_s:.2} s, when the scene was replaced");
             let titles: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
             let layers = fold_copies(&titles).join(", ");
-            line("never touched", format!("{layers}{}", self.replaced_at_s.map_or(String::new(), since)));
+            lines.push(("never touched", format!("{layers}{}", self.replaced_at_s.map_or(String::new(), since))));
         }
-        if let Some(factor) = self.realtime_factor {
-            let decimals = if factor < 10.0 { 2 } else { 0 };
-            line("speed", format!("{factor:.decimals$} times real time"));
-        }
-        text
+        lines
     }
 }
+
+/// Name and text of a line.
+type Line = (&'static str, String);
 
 /// The line of a summary that marks a draft.
 pub(crate) fn draft_line(refusals: usize) -> String {

@@ -47,9 +47,9 @@ fn parts(program: &Program, counts: &Counts) -> Vec<Part> {
     let rig = RigConfig::default();
     let (limits, costs) = (&rig.board.limits, BoardCosts::of(program, &rig, 0));
     let worst = program.worst_tick(limits.core).cycles(limits.core);
-    let (reach, asked) = (&program.reach, TargetRange::of(program));
+    let (reach, targets) = (&program.reach, TargetRange::of(program));
     let pictures: usize = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
-    let electric_n = (asked.most_n.min(reach.friction_max_n()) - reach.natural_friction_n).max(0.0);
+    let electric_n = (targets.most_n.min(reach.friction_max_n()) - reach.natural_friction_n).max(0.0);
     let table = [costs.table_rows, costs.table_rows_whole].map(|rows| (InverseTable::ROW_BYTES * rows) as f64);
     let mut parts: Vec<Part> = vec![
         ("tick, if all layers were under the finger", "cycles", worst.into(), every_layer(program).into()),
@@ -92,7 +92,7 @@ fn image_bytes(program: &Program, counts: &Counts) -> Option<f64> {
 fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
     let omitted: Vec<String> = program.optimisations().map(ToString::to_string).collect();
     let omitted = if omitted.is_empty() { "nothing of its file is left out".to_owned() } else { omitted.join("; ") };
-    let (reach, asked) = (&program.reach, TargetRange::of(program));
+    let (reach, targets) = (&program.reach, TargetRange::of(program));
     let mut notes = vec![format!("Layers of {name} that are played: {}; {omitted}.", program.records.len())];
     let refused: Vec<String> = program.refusals().map(ToString::to_string).collect();
     if !refused.is_empty() {
@@ -105,8 +105,8 @@ fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
         1e3 * reach.natural_friction_n,
         1e3 * reach.friction_max_n(),
         reach.voltage_max_v_rms,
-        1e3 * asked.least_n,
-        1e3 * asked.most_n
+        1e3 * targets.least_n,
+        1e3 * targets.most_n
     ));
     notes.push(
         "The first line is what the grid saves: a tick evaluates the layers near the finger only. Cycles are estimated \

@@ -105,7 +105,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Plays trials of a program on the simulated board in a world, and scores them.
+    /// Plays trials of a program on the simulated board in a world, and scores them. Layers that start off are on.
     ///
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
     /// of threads. When `goes_on` breaks, it is that of what was played.
@@ -115,6 +115,7 @@ impl Score {
         trials: &[Trial],
         goes_on: GoesOn<'_>,
     ) -> Result<Self, SimulationError> {
+        let program = &switched_on(program);
         let fingers = judgements(program, world, trials, goes_on)?;
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
@@ -153,6 +154,13 @@ impl Score {
         };
         Ok(Self { simulated: score.simulated_words(), verdict: score.sentence(), ..score })
     }
+}
+
+/// A program with all layers on.
+fn switched_on(program: &Program) -> Program {
+    let mut program = program.clone();
+    program.start.iter_mut().for_each(|setting| setting.on = true);
+    program
 }
 
 /// The simulated board in a world, under the finger of a trial.

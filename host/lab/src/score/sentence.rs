@@ -5,7 +5,7 @@ use frixel_scene::{LayerTitle, fold_copies};
 use super::{LayerScore, LevelScore, Score, Verdicts};
 
 /// Most layers that a sentence names.
-const NAMED_MAX: usize = 6;
+const NAMED_MAX: usize = 3;
 
 impl Score {
     /// The sentence of [`Score::verdict`].
@@ -34,68 +34,81 @@ impl Score {
 
     fn noticed(&self) -> String {
         let (fingers, layers) = (self.simulated_fingers, &self.layers);
-        let below: Vec<&LayerScore> = layers.iter().filter(|layer| !layer.simulated_fingers.is_felt_by_all()).collect();
-        let every = if self.untouched_layers.is_empty() { "every layer" } else { "every layer that was touched" };
-        let every = match below.len() {
-            0 => every.to_owned(),
-            but => format!("{every} but {but}"),
-        };
+        if layers.is_empty() {
+            return "no stroke was on a layer, driven, for long enough to say what is noticed".to_owned();
+        }
+        let (by_all, below): (Vec<&LayerScore>, Vec<&LayerScore>) =
+            layers.iter().partition(|layer| layer.simulated_fingers.is_felt_by_all());
         // A finger notices nothing of a layer that it did not touch.
-        let by_all = layers.iter().filter(|layer| layer.simulated_fingers.is_felt_by_all());
-        let all = if by_all.into_iter().all(|layer| layer.simulated_fingers.touched == fingers) {
-            format!("{fingers} of {fingers} simulated fingers notice")
-        } else {
-            format!("of {fingers} simulated fingers, those that touched it notice")
-        };
-        let named = || named(&below, fingers);
-        match (layers.len(), below.len(), fingers) {
-            (0, ..) => "no stroke was on a layer, driven, for long enough to say what is noticed".to_owned(),
-            (_, 0, 1) => format!("the simulated finger notices {every}"),
-            (_, 0, _) => format!("{all} {every}"),
-            (count, but, 1) if but < count => format!("the simulated finger notices {every}: {}", named()),
-            (count, but, _) if but < count => {
-                format!("{all} {every}: {}", named())
+        let by = match fingers {
+            1 => "the simulated finger".to_owned(),
+            _ if by_all.iter().all(|layer| layer.simulated_fingers.touched == fingers) => {
+                format!("{fingers} of {fingers} simulated fingers")
             }
-            (.., 1) => format!("there is no layer that the simulated finger surely notices: {}", named()),
-            _ => format!("there is no layer that {fingers} of {fingers} simulated fingers notice: {}", named()),
+            _ => format!("those of {fingers} simulated fingers that touched them"),
+        };
+        let (what, is) = match (layers.len(), by_all.len()) {
+            (1, _) => ("layer", "is"),
+            (_, 1) => ("layers", "is"),
+            _ => ("layers", "are"),
+        };
+        let all = format!("{} of {} {what} {is} noticed by {by}", by_all.len(), layers.len());
+        match (below.len(), fingers) {
+            (0, _) => all,
+            (_, 1) => format!("{all}; {}", by_verdict(&below)),
+            _ => format!("{all}; noticed by fewer: {}", by_count(&below, fingers)),
         }
     }
 }
 
-/// Layers with how many fingers notice them. Copies of a layer are listed together, those first that are noticed the
-/// least surely; a single finger's by its verdict.
-fn named(layers: &[&LayerScore], fingers: usize) -> String {
+/// Layers in the order of the file. Copies of a layer are listed together, those first that are noticed the least surely.
+fn ordered<'s>(layers: impl IntoIterator<Item = &'s LayerScore>) -> Vec<&'s LayerScore> {
+    let mut layers: Vec<&LayerScore> = layers.into_iter().collect();
+    let table = |layer: &LayerScore| layer.layer.number().table;
+    layers.sort_by(|one, other| table(one).cmp(&table(other)).then_with(|| one.cmp_felt(other)));
+    layers
+}
+
+fn titles(layers: &[&LayerScore]) -> String {
+    listed(fold_copies(&layers.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
+}
+
+/// Layers by the verdict of the only finger.
+fn by_verdict(layers: &[&LayerScore]) -> String {
+    let of_verdict = |verdict: &str| {
+        let layers = layers.iter().copied().filter(|layer| word(&layer.simulated_fingers) == verdict);
+        let layers = ordered(layers);
+        (!layers.is_empty()).then(|| format!("{verdict}: {}", titles(&layers)))
+    };
+    ["not noticed", "maybe", "unknown"].into_iter().filter_map(of_verdict).collect::<Vec<String>>().join("; ")
+}
+
+/// The verdict of the only finger.
+fn word(verdicts: &Verdicts) -> &'static str {
+    match *verdicts {
+        Verdicts { felt_by_some: 1.., .. } => "maybe",
+        Verdicts { unknown: 1.., .. } => "unknown",
+        _ => "not noticed",
+    }
+}
+
+/// Layers with how many of several fingers notice them.
+fn by_count(layers: &[&LayerScore], fingers: usize) -> String {
+    let layers = ordered(layers.iter().copied());
     let copies = layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
-    let parts = copies.flat_map(|copies| {
-        let mut copies = copies.to_vec();
-        copies.sort_by(|one, other| one.cmp_felt(other));
-        let same = |one: &&LayerScore, other: &&LayerScore| one.simulated_fingers == other.simulated_fingers;
-        let titles = |copies: &[&LayerScore]| {
-            listed(fold_copies(&copies.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
-        };
-        let by_verdict = |copies: &[&LayerScore]| {
-            let text = copies.first().map(|least| words(&least.simulated_fingers, fingers)).unwrap_or_default();
-            if fingers == 1 {
-                return format!("{text} {}", titles(copies));
-            }
-            let more = if copies.chunk_by(same).count() > 1 { " at least" } else { "" };
-            format!("{} by {text}{more}", titles(copies))
-        };
-        if fingers == 1 { copies.chunk_by(same).map(by_verdict).collect() } else { vec![by_verdict(&copies)] }
+    let parts = copies.map(|copies| {
+        let least = copies.first().map(|least| count(&least.simulated_fingers, fingers)).unwrap_or_default();
+        let is_same =
+            copies.iter().zip(copies.iter().skip(1)).all(|(one, next)| one.simulated_fingers == next.simulated_fingers);
+        format!("{} by {least}{}", titles(copies), if is_same { "" } else { " at least" })
     });
     listed(parts.collect())
 }
 
 /// How many fingers notice something, of those that touched it.
-fn words(verdicts: &Verdicts, fingers: usize) -> String {
-    let Verdicts { touched, felt, felt_by_some, unknown, .. } = *verdicts;
-    match fingers {
-        1 if felt_by_some > 0 => "maybe".to_owned(),
-        1 if unknown > 0 => "unknown for".to_owned(),
-        1 => "not".to_owned(),
-        fingers if touched < fingers => format!("{felt} of {touched}"),
-        _ => felt.to_string(),
-    }
+fn count(verdicts: &Verdicts, fingers: usize) -> String {
+    let Verdicts { touched, felt, .. } = *verdicts;
+    if touched < fingers { format!("{felt} of {touched}") } else { felt.to_string() }
 }
 
 fn told_apart(levels: &[&LevelScore], fingers: usize) -> Option<String> {
@@ -105,7 +118,7 @@ fn told_apart(levels: &[&LevelScore], fingers: usize) -> Option<String> {
         let pairs: Vec<String> = levels.iter().map(|level| pair(level)).collect();
         return (!pairs.is_empty()).then(|| format!("not surely told apart: {}", alternatives(pairs)));
     }
-    let by = |level: &&LevelScore| format!("{} by {}", pair(level), words(&level.simulated_fingers, fingers));
+    let by = |level: &&LevelScore| format!("{} by {}", pair(level), count(&level.simulated_fingers, fingers));
     let pairs: Vec<String> = levels.iter().map(by).collect();
     (!pairs.is_empty()).then(|| format!("told apart: {}", alternatives(pairs)))
 }
@@ -177,16 +190,19 @@ mod tests {
             let [lower, higher] = [3, 4].map(|table| vec![title(table, None, &format!("bar {table}"))]);
             vec![LevelScore { lower, higher, simulated_fingers: verdicts(8, felt, 0), weber_steps: 1.0 }]
         };
-        let all = "8 of 8 simulated fingers notice every layer";
+        let all = "2 of 2 layers are noticed by 8 of 8 simulated fingers";
         assert_eq!(score(8, bars(8, [8, 8]), levels(8)).sentence(), all);
         assert_eq!(
             score(8, bars(8, [8, 8]), levels(2)).sentence(),
             format!("{all}; told apart: layer 3 \"bar 3\" and layer 4 \"bar 4\" by 2")
         );
-        assert_eq!(score(8, bars(8, [8, 5]), Vec::new()).sentence(), format!("{all} but 1: layer 2 \"bar 2\" by 5"));
+        assert_eq!(
+            score(8, bars(8, [8, 5]), Vec::new()).sentence(),
+            "1 of 2 layers is noticed by 8 of 8 simulated fingers; noticed by fewer: layer 2 \"bar 2\" by 5"
+        );
         assert_eq!(
             score(8, bars(7, [3, 0]), Vec::new()).sentence(),
-            "there is no layer that 8 of 8 simulated fingers notice: layer 1 \"bar 1\" by 3 of 7 and \
+            "0 of 2 layers are noticed by 8 of 8 simulated fingers; noticed by fewer: layer 1 \"bar 1\" by 3 of 7 and \
              layer 2 \"bar 2\" by 0 of 7"
         );
     }
@@ -194,12 +210,13 @@ mod tests {
     #[test]
     fn one_finger_notices_or_not() {
         let sentence = |felt| score(1, bars(1, felt), Vec::new()).sentence();
-        assert_eq!(sentence([1, 1]), "the simulated finger notices every layer");
-        assert_eq!(sentence([1, 0]), "the simulated finger notices every layer but 1: not layer 2 \"bar 2\"");
+        let by = "noticed by the simulated finger";
+        assert_eq!(sentence([1, 1]), format!("2 of 2 layers are {by}"));
+        assert_eq!(sentence([1, 0]), format!("1 of 2 layers is {by}; not noticed: layer 2 \"bar 2\""));
         let seldom = score(8, bars(7, [7, 7]), Vec::new()).sentence();
-        assert_eq!(seldom, "of 8 simulated fingers, those that touched it notice every layer");
-        let none = "there is no layer that the simulated finger surely notices: ";
-        assert_eq!(sentence([0, 0]), format!("{none}not layer 1 \"bar 1\" and not layer 2 \"bar 2\""));
+        assert_eq!(seldom, "2 of 2 layers are noticed by those of 8 simulated fingers that touched them");
+        let none = format!("0 of 2 layers are {by}; not noticed: ");
+        assert_eq!(sentence([0, 0]), format!("{none}layer 1 \"bar 1\" and layer 2 \"bar 2\""));
     }
 
     #[test]
@@ -211,7 +228,8 @@ mod tests {
         touched.untouched_layers = nothing.untouched_layers;
         assert_eq!(
             touched.sentence(),
-            "2 of 3 layers were touched: 2 of 2 simulated fingers notice every layer that was touched; no stroke says anything about layer 1 \"far\""
+            "2 of 3 layers were touched: 2 of 2 layers are noticed by 2 of 2 simulated fingers; no stroke says anything \
+             about layer 1 \"far\""
         );
     }
 
@@ -227,8 +245,8 @@ mod tests {
         let detents = score(1, (1..).zip(contrasts).map(detent).collect(), Vec::new());
         assert_eq!(
             detents.sentence(),
-            "the simulated finger notices every layer but 6: not layer 5.9 \"detent 9\" with 2 more copies and \
-             maybe layer 5.5 \"detent 5\" with 2 more copies"
+            "3 of 9 layers are noticed by the simulated finger; not noticed: layer 5.9 \"detent 9\" with 2 more copies; \
+             maybe: layer 5.5 \"detent 5\" with 2 more copies"
         );
         let (least, copies) = detents.layer_rows().next().unwrap();
         assert_eq!((least.layer.as_str(), copies), ("layer 5.9 \"detent 9\"", 9));
@@ -238,7 +256,7 @@ mod tests {
     #[test]
     fn a_summary_of_many_layers_is_short() {
         let key = |table: usize| layer(title(table, None, &format!("key {table}")), verdicts(40, table, 0));
-        let summary = score(40, (1..=37).rev().map(key).collect(), Vec::new()).summary();
+        let summary = score(40, (1..=37).rev().map(key).collect(), Vec::new()).summary(false);
         let lines: Vec<&str> = summary.lines().filter(|line| line.contains("layer")).collect();
         assert!(lines[0].contains("\"key 1\"") && lines[9].contains("\"key 10\""), "{summary}");
         assert!(lines[10].contains("and 27 more layers") && lines[10].contains("score-layers.csv"), "{summary}");
@@ -251,10 +269,11 @@ mod tests {
         let key = |copy| layer(title(1, Some(copy), &format!("key {copy}")), verdicts(4, copy % 3, 0));
         assert_eq!(
             score(4, (1..=30).map(key).collect(), Vec::new()).sentence(),
-            "there is no layer that 4 of 4 simulated fingers notice: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
+            "0 of 30 layers are noticed by 4 of 4 simulated fingers; noticed by fewer: layer 1.3 \"key 3\" with 29 more \
+             copies by 0 at least"
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();
-        assert!(sentence.ends_with("layer 5 \"bar\" by 1 and 32 more"), "{sentence}");
+        assert!(sentence.ends_with("layer 2 \"bar\" by 1 and 35 more"), "{sentence}");
     }
 }

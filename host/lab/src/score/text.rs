@@ -17,19 +17,17 @@ const LEVEL_LINES_MAX: usize = 4;
 const NAME_WIDTH: usize = 30;
 
 impl Score {
-    /// The score as a table, a line for each number, for each layer with its copies and for each two levels, and a last
-    /// sentence. Of many layers and levels, only those that are noticed the least surely have a line.
-    pub fn summary(&self) -> String {
-        let mut text = String::new();
+    /// The score in words: the [verdict](Self::verdict), then a line for each layer with its copies and for each two
+    /// levels. Of many layers and levels, only those that are noticed the least surely have a line. With
+    /// `with_fidelity`, every number of [`Self::metrics`] follows, with the goals of a display.
+    pub fn summary(&self, with_fidelity: bool) -> String {
+        let mut text = format!("  {}\n", self.verdict);
         let mut line = |name: &str, value: &str| {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "  {name:<NAME_WIDTH$} {value}");
         };
         line("simulated", &self.simulated);
         line("touch source", &self.touch_source.to_string());
-        for metric in &self.metrics {
-            line(metric.title, &value_text(metric));
-        }
         let mut layers: Vec<(&LayerScore, usize)> = self.layer_rows().collect();
         let more = keep_least(&mut layers, LAYER_LINES_MAX, |(one, _), (other, _)| one.cmp_felt(other));
         for (layer, copies) in layers {
@@ -47,7 +45,9 @@ impl Score {
         if more > 0 {
             line(&format!("and {more} more pairs of levels"), "told apart more surely: --json");
         }
-        line("verdict", &self.verdict);
+        for metric in self.metrics.iter().filter(|_| with_fidelity) {
+            line(metric.title, &value_text(metric));
+        }
         text
     }
 

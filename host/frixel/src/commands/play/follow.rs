@@ -8,7 +8,7 @@ use crate::output::Report;
 use crate::rigs::RecordedLink;
 use anyhow::{Result, bail};
 use frixel_driver::Device;
-use frixel_felt::judge::in_play;
+use frixel_felt::judge::{in_play, starts_off};
 use frixel_lab::recording::{check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
@@ -201,8 +201,10 @@ impl<L: RecordedLink> Play<'_, L> {
         let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let goes_on = || if is_requested { ControlFlow::Continue(()) } else { self.interrupt.goes_on() };
-        let verdicts = recorder.take_judged().and_then(|samples| in_play(program, &samples, &goes_on));
-        let report = report.with_verdicts(verdicts, recorder.t_s());
+        let judged = recorder.take_judged();
+        let is_changed = judged.is_none() && target.is_virtual_time();
+        let verdicts = judged.and_then(|samples| in_play(program, &samples, &goes_on));
+        let report = report.with_verdicts(verdicts, recorder.t_s()).with_changes(is_changed, starts_off(program));
         let marked = (recorder.markers(), is_requested || ended.is_err());
         let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
