@@ -1,4 +1,4 @@
-//! Commands: their frames, their names in messages, and the states that they lead to.
+//! Commands: their frames, their names in messages, and the states that they result in.
 
 use frixel_wire::fault::State;
 use frixel_wire::frame::FRAME_MAX_LEN;
@@ -37,7 +37,7 @@ pub(super) fn name_of(command: &Command) -> &'static str {
     }
 }
 
-/// The state that a command leads to, if its purpose is to change the state.
+/// The state that a command results in, if its purpose is to change the state.
 pub(super) fn state_after(command: &Command) -> Option<State> {
     match command {
         Command::Arm | Command::Stop => Some(State::Armed),

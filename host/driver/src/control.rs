@@ -1,12 +1,11 @@
-//! The words with which a program changes a scene while it plays. The command, the page and the Python module share
-//! them.
+//! Control lines, which change a scene while it plays. The command, the page and the Python module share them.
 //!
 //! A line is one of
 //!
-//! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or several of these words: changes a layer;
+//! - `layer NAME on`, `layer NAME off`, `layer NAME gain X`, or a combination: changes a layer;
 //! - `trigger NAME [MS]`: switches on a layer that is off, and switches it off again after MS milliseconds; without
 //!   them, after its pattern or its burst, or else after 100;
-//! - `replace FILE`: plays another scene, or the same one anew;
+//! - `replace FILE`: plays another scene, or restarts the same one;
 //! - `wait S`: carries out the following lines S seconds later;
 //! - `quit`: ends the play.
 //!
@@ -25,18 +24,18 @@ const GAIN_MAX: f32 = 100.0;
 pub enum ControlLine {
     /// Changes a layer.
     Layer {
-        /// Its name, or its number: `3`, or `3.2` for a copy.
+        /// Name or number of the layer: `3`, or `3.2` for a copy.
         layer: String,
-        /// Whether it is on from now on; `None` leaves it as it is.
+        /// Whether to switch it on or off; `None` leaves it unchanged.
         on: Option<bool>,
-        /// The factor on its friction; `None` leaves it as it is.
+        /// The gain; `None` leaves it unchanged.
         gain: Option<f32>,
     },
-    /// Switches a layer on for a time.
+    /// Switches a layer on temporarily.
     Trigger {
-        /// Its name, or its number: `3`, or `3.2` for a copy.
+        /// Name or number of the layer: `3`, or `3.2` for a copy.
         layer: String,
-        /// How long, in s; `None` for as long as its pattern or its burst lasts.
+        /// Duration, s; `None` for the duration of its pattern or burst.
         duration_s: Option<f64>,
     },
     /// Plays another scene.
@@ -46,37 +45,37 @@ pub enum ControlLine {
     },
     /// Delays the following lines.
     Wait {
-        /// How long, in s.
+        /// Delay, s.
         duration_s: f64,
     },
     /// Ends the play.
     Quit,
 }
 
-/// Why a line cannot be carried out.
+/// Why a control line is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ControlError {
-    /// The first word is none of the vocabulary.
-    #[error("`{0}` is no control word: write layer, trigger, replace, wait or quit")]
+    /// The first word is unknown.
+    #[error("`{0}` is not a control word: write layer, trigger, replace, wait or quit")]
     UnknownWord(String),
-    /// A word is missing at the end.
+    /// The line is incomplete.
     #[error("`{line}` ends too early: {expected}")]
     Incomplete {
         /// The line.
         line: String,
-        /// What comes after the last word.
+        /// The expected word.
         expected: &'static str,
     },
-    /// A word does not belong where it is.
+    /// A word is unexpected.
     #[error("`{found}` is unexpected here: {expected}")]
     Unexpected {
         /// The word.
         found: String,
-        /// What belongs there.
+        /// The expected word.
         expected: &'static str,
     },
-    /// A quotation mark has no partner.
-    #[error("the quotation mark of `{0}` is not closed: put one behind the name")]
+    /// A quotation mark is not closed.
+    #[error("the quotation mark of `{0}` is not closed: add one after the name")]
     OpenQuote(String),
 }
 
@@ -85,10 +84,10 @@ const CHANGE: &str = "write on, off, or gain and a number from -100 to 100";
 const FILE: &str = "give the path of a scene file";
 const MILLISECONDS: &str = "give a number of milliseconds above 0, at most an hour";
 const SECONDS: &str = "give a number of seconds above 0, at most an hour";
-const NOTHING: &str = "nothing belongs behind this line";
+const NOTHING: &str = "end the line before it";
 
 impl ControlLine {
-    /// Parses a line; `None` for one without words.
+    /// Parses a line; `None` for an empty one.
     ///
     /// ```
     /// use frixel_driver::ControlLine;
@@ -143,7 +142,7 @@ impl ControlLine {
     }
 }
 
-/// The words of a line that are left.
+/// The remaining words of a line.
 struct Words<'l> {
     line: &'l str,
     words: std::vec::IntoIter<String>,
@@ -155,7 +154,7 @@ impl Words<'_> {
     }
 }
 
-/// Splits a line at spaces outside of quotation marks, up to a `#`.
+/// Splits a line at spaces outside quotation marks, up to a `#`.
 fn words(line: &str) -> Result<Vec<String>, ControlError> {
     let mut words = Vec::new();
     let mut rest = line.trim_start();
@@ -203,16 +202,16 @@ mod tests {
     #[test]
     fn an_unknown_line_gives_one_sentence() {
         for (line, parts) in [
-            ("leyer OK off", ["`leyer` is no control word", "layer, trigger, replace, wait or quit"]),
+            ("leyer OK off", ["`leyer` is not a control word", "layer, trigger, replace, wait or quit"]),
             ("layer", ["`layer` ends too early", "name of a layer, or its number: 3, or 3.2 for a copy"]),
             ("layer OK", ["ends too early", "write on, off, or gain"]),
             ("layer OK louder", ["`louder` is unexpected", "write on, off, or gain"]),
             ("layer OK gain 200", ["`200` is unexpected", "-100 to 100"]),
             ("layer OK gain nan", ["`nan` is unexpected", "-100 to 100"]),
-            ("layer \"OK off", ["`\"OK off` is not closed", "put one behind"]),
+            ("layer \"OK off", ["`\"OK off` is not closed", "add one after"]),
             ("trigger OK -3", ["`-3` is unexpected", "milliseconds above 0"]),
             ("wait", ["ends too early", "seconds above 0"]),
-            ("quit now", ["`now` is unexpected", "nothing belongs"]),
+            ("quit now", ["`now` is unexpected", "end the line"]),
         ] {
             let sentence = ControlLine::parse(line).unwrap_err().to_string();
             assert!(parts.iter().all(|part| sentence.contains(part)), "{line}: {sentence}");

@@ -1,4 +1,4 @@
-//! Credit: how many bytes the host may have under way to the board.
+//! Credit: the number of bytes that the host may have in flight to the board.
 
 /// Counts the bytes on the way to the board.
 ///
@@ -15,7 +15,7 @@ pub(super) struct Credit {
     received: u64,
 }
 
-/// The board's count decreased. Only a restart of the board or another host's hello causes this.
+/// The board's count decreased, which only a restart of the board or another host's hello can cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CountRestarted;
 

@@ -29,26 +29,25 @@ const PING_PERIOD_MIN: Duration = Duration::from_millis(5);
 /// A board that has answered the hello.
 ///
 /// **Pings.** An armed board that receives nothing for the scene's host timeout disarms itself and sets its output to
-/// zero. The link therefore pings the board: often enough for the host timeout of the scene that this value has
-/// committed, or for every host timeout if it has committed none. The pings end
-/// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the application's last call that sends or receives, and the
-/// board then disarms itself, so an application that hangs does not keep a board playing. A call that waits keeps the
-/// pings going while it waits. An application that plays one scene for a long time calls [`Self::wait`] or
-/// [`Self::keep_alive`] several times a second. It makes these calls in the loop that reacts to a request to stop,
-/// never in a thread or timer that would continue without that loop. [`KeepAlive`](crate::KeepAlive) says what a board
-/// that does not answer gets.
+/// zero. The link therefore pings the board. Its ping period suits the host timeout of the scene committed by this
+/// value, or the shortest host timeout if it has committed none. Pings end
+/// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT) after the application's last call that sends or receives, so an
+/// application that hangs does not keep a board playing. A call that waits keeps the pings going.
+/// An application that plays one scene for a long time calls [`Self::wait`] or [`Self::keep_alive`] several times a
+/// second. Make these calls in the loop that reacts to a request to stop, never in a thread or timer that would
+/// continue without that loop. [`KeepAlive`](crate::KeepAlive) describes the pings to a board that does not answer.
 ///
-/// Dropping a value that has armed the board stops and disarms the board if the link still works. In any case the board
+/// Dropping a value that has armed the board stops and disarms the board if the link still works. Otherwise the board
 /// sets its output to zero once the pings have stopped.
 pub struct Device<L: Link> {
     exchange: Exchange<L>,
     hello: Hello,
     uploads: UploadCounts,
-    /// CRC-32 of the scene uploaded last, and the time between pings that its host timeout needs.
+    /// CRC-32 of the scene uploaded last, and the ping period for its host timeout.
     uploaded: Option<(u32, Duration)>,
-    /// Time between pings that the committed scene needs, if this value has committed it.
+    /// Ping period of the scene committed by this value; `None` if it has committed none.
     committed: Option<Duration>,
-    /// The board may be armed or active because of this value.
+    /// Whether this value may have armed the board.
     armed: bool,
     /// The stream that was started last.
     stream: Option<StreamProgress>,
@@ -65,7 +64,7 @@ pub enum Event {
         state: State,
         /// The latched fault, if there is one.
         fault: Option<Fault>,
-        /// The reason, where it is not a fault.
+        /// The reason, if it is not a fault.
         flags: Flags,
     },
 }
@@ -75,7 +74,7 @@ pub enum Event {
 pub struct Counters {
     /// Frames sent, pings included.
     pub frames_sent: u64,
-    /// Frames that arrived damaged: frames of the board, and chunks that the board requested again.
+    /// Damaged frames: received ones, and chunks that the board requested again.
     pub frames_rejected: u64,
     /// Uploaded bytes of scenes and bitmaps, each counted once.
     pub payload_bytes: u64,
@@ -87,8 +86,7 @@ impl<L: Link> Device<L> {
     /// Exchanges the hello with the board, checks that both sides speak the same protocol, and starts the pings. Takes
     /// at most 0.75 s if no board answers.
     ///
-    /// The hello disarms a board that another client has armed or set playing, except for a scene that plays without a
-    /// host.
+    /// The hello disarms a board that another client has armed.
     pub fn connect(mut link: L) -> Result<Self, DeviceError> {
         let mut decoder = Decoder::new();
         let hello = request_hello(&mut link, &mut decoder)?;
@@ -102,22 +100,22 @@ impl<L: Link> Device<L> {
         Ok(device)
     }
 
-    /// Calls `watcher` about ten times a second while a call waits for an answer, or for the board to acknowledge the
-    /// bytes of an upload. It may end the call with [`DeviceError::BrokenOff`], for a person who does not want to wait.
+    /// Sets a function that is called about ten times a second while a call waits for an answer, or for the board to
+    /// acknowledge an upload. It may end the call with [`DeviceError::BrokenOff`], for example at a user's request.
     ///
-    /// A board that is in order answers within milliseconds, so a program that stops a board in the usual way on
-    /// request breaks a wait off only after a second or so.
+    /// A working board answers within milliseconds. A program that stops a board on request should therefore break off
+    /// a wait only after a second or so.
     pub fn while_waiting(&mut self, watcher: impl FnMut(&Waiting) -> ControlFlow<()> + Send + 'static) {
         self.exchange.set_watcher(Box::new(watcher));
     }
 
-    /// The hello that the board answered with.
+    /// The hello sent by the board.
     pub fn hello(&self) -> &Hello {
         &self.hello
     }
 
-    /// Uploads the scene, and those of its bitmaps that the board does not hold. The playing scene does not change
-    /// before [`Self::commit`]. `progress` is called several times a second, and may break the upload off with
+    /// Uploads the scene, and its bitmaps that the board does not hold. The playing scene does not change before
+    /// [`Self::commit`]. `progress` is called several times a second, and may end the upload with
     /// [`DeviceError::Interrupted`].
     pub fn upload(
         &mut self,
@@ -132,7 +130,7 @@ impl<L: Link> Device<L> {
         upload::send(&mut self.exchange, upload, &mut self.uploads, progress)
     }
 
-    /// Refuses a scene that needs features which the board does not have.
+    /// Refuses a scene that needs features missing on the board.
     fn check_features(&self, needed: u32) -> Result<(), DeviceError> {
         let Hello { features, firmware, protocol, .. } = self.hello;
         let missing = feature_names().filter(|(bit, _)| needed & !features & bit != 0);
@@ -144,9 +142,10 @@ impl<L: Link> Device<L> {
         Err(DeviceError::MissingFeatures { port, missing: missing.join(" and "), firmware, protocol })
     }
 
-    /// Makes the uploaded scene the committed one, which plays or will play. `scene_crc32` is [`Upload::scene_crc32`].
+    /// Commits the uploaded scene, which plays from then on or at the next play. `scene_crc32` is
+    /// [`Upload::scene_crc32`].
     ///
-    /// From then on the pings follow its host timeout.
+    /// Afterwards, the pings follow its host timeout.
     pub fn commit(&mut self, scene_crc32: u32) -> Result<(), DeviceError> {
         // Until the board has answered, the host timeout of either scene may apply.
         self.committed = None;
@@ -182,9 +181,8 @@ impl<L: Link> Device<L> {
         self.request(Command::Stop)
     }
 
-    /// Switches a layer of the committed scene on or off while it plays, and sets the factor on the layer's friction,
-    /// -100 to 100, which replaces its gain in the scene. The change takes effect at the next tick and holds until the
-    /// next commit.
+    /// Switches a layer of the committed scene on or off while it plays, and sets its gain, -100 to 100, in place of
+    /// the scene's. The change takes effect at the next tick and holds until the next commit.
     ///
     /// `layer` is the number of the layer's record, from zero. The board clamps friction out of reach and sets a flag
     /// in its telemetry.
@@ -197,7 +195,7 @@ impl<L: Link> Device<L> {
         self.request(Command::ClearFault)
     }
 
-    /// What the firmware said of the fault that led to its last reset; empty if there was none.
+    /// Text stored by the firmware about the fault that led to its last reset; empty if there was none.
     pub fn fault_text(&mut self) -> Result<String, DeviceError> {
         let mut text = Vec::new();
         while text.len() < FAULT_TEXT_MAX_LEN {
@@ -214,7 +212,7 @@ impl<L: Link> Device<L> {
         Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
-    /// How long the board's ticks have taken; `None` if the board does not measure it.
+    /// Durations of the board's ticks; `None` if the board does not measure them.
     pub fn tick_times(&mut self) -> Result<Option<TickTimes>, DeviceError> {
         if self.hello.features & feature::TELEMETRY == 0 {
             return Ok(None);
@@ -236,8 +234,7 @@ impl<L: Link> Device<L> {
         self.request(Command::Subscribe { period_ticks })
     }
 
-    /// Waits for `duration` on the link's clock, and passes `on_event` the events that arrive meanwhile and those that
-    /// arrived before.
+    /// Waits for `duration` on the link's clock. Passes earlier and arriving events to `on_event`.
     ///
     /// Returns early with [`DeviceError::Silent`] if the board no longer answers pings.
     pub fn wait(&mut self, duration: Duration, on_event: &mut dyn FnMut(Event)) -> Result<(), DeviceError> {
@@ -254,12 +251,11 @@ impl<L: Link> Device<L> {
         }
     }
 
-    /// Keeps the pings going for another [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT), and stores the events that
-    /// have arrived for the next [`Self::wait`]. Does not wait, and therefore does not report a board that has stopped
-    /// answering.
+    /// Keeps the pings going for another [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT), and stores arrived events
+    /// for the next [`Self::wait`]. Does not wait, and therefore does not detect a board that has stopped answering.
     ///
-    /// For a program that runs its own loop while a scene plays and has no other call to make. On a link to a simulated
-    /// board, whose clock advances only while the program waits, no time passes: call [`Self::wait`] there.
+    /// Use this in a program that runs its own loop while a scene plays. With a simulated board whose clock advances
+    /// only while the program waits, call [`Self::wait`] instead.
     ///
     /// ```no_run
     /// # use frixel_driver::{Device, DeviceError, Link};
@@ -291,7 +287,7 @@ impl<L: Link> Device<L> {
         }
     }
 
-    /// The underlying link, for the methods of its own type. [`Device`] continues to use it.
+    /// The underlying link, for methods of its own type. [`Device`] continues to use it.
     pub fn link_mut(&mut self) -> &mut L {
         self.exchange.link_mut()
     }
@@ -302,7 +298,7 @@ impl<L: Link> Device<L> {
         self.exchange.into_link()
     }
 
-    /// If this value arms the board, the link pings it, and stops and disarms it when it is dropped.
+    /// Prepares the link to ping the board, and to stop and disarm it when dropped.
     fn before_arming(&mut self) -> Result<(), DeviceError> {
         self.exchange.set_shutdown_commands(&[Command::Stop, Command::Disarm])?;
         self.armed = true;
@@ -310,8 +306,8 @@ impl<L: Link> Device<L> {
         Ok(())
     }
 
-    /// Sets the time between pings. If the scene of an armed board was committed elsewhere, or a commit is under way,
-    /// its host timeout may be the shortest one.
+    /// Sets the ping period. If another client committed the scene of an armed board, or during a commit, the host
+    /// timeout may be the shortest one.
     fn pace_pings(&mut self) {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
         self.exchange.ping_every(period);

@@ -12,7 +12,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{port} vanished ({reason})")]
 pub struct LinkClosed {
-    /// Name of the link: the path of a port, or words.
+    /// Name of the link: the path of a port, or a description.
     pub port: String,
     /// The reason, in the operating system's words.
     pub reason: String,
@@ -27,8 +27,8 @@ pub enum DeviceError {
          the board, then reset the board and try again",
         .waited.as_millis(),
         if *.heard_bytes > 0 {
-            ", though something else talks there: another program that opened the port first (a serial monitor, a second frixel) takes a part \
-             of the answers, so close it"
+            ", but something else was received: another program that opened the port first (a serial monitor, a second \
+             frixel) takes part of the answers, so close it"
         } else {
             ""
         }
@@ -38,7 +38,7 @@ pub enum DeviceError {
         port: String,
         /// How long the host waited, on the link's clock.
         waited: Duration,
-        /// Bytes that arrived meanwhile.
+        /// Bytes received while waiting.
         heard_bytes: usize,
     },
     /// The board speaks another protocol.
@@ -46,7 +46,7 @@ pub enum DeviceError {
     Version {
         /// Name of the link.
         port: String,
-        /// Which versions, and which side to change.
+        /// The versions, and the side to update.
         mismatch: Mismatch,
     },
     /// The board did not answer.
@@ -65,8 +65,8 @@ pub enum DeviceError {
     },
     /// The board answers, but the answer to one request took too long.
     #[error(
-        "{command} was not answered by the board on {port} for {} s, although it answers: it takes too long for each \
-         frame; disconnect what else it serves, or reset it, then start again",
+        "{command} was not answered by the board on {port} for {} s, although it answers other frames: it is too slow; \
+         disconnect its other clients, or reset it, then start again",
         .waited.as_secs()
     )]
     TooSlow {
@@ -111,10 +111,10 @@ pub enum DeviceError {
         /// The board's reason.
         refusal: Refusal,
     },
-    /// The board accepted a command and is not in the state that the command leads to.
+    /// The board accepted a command, but is not in the resulting state.
     #[error(
-        "the board on {port} accepted {command} and then said that it is {found:?}, not {expected:?}: its firmware is faulty; \
-         {}flash its firmware anew",
+        "the board on {port} accepted {command} and then reported that it is {found:?}, not {expected:?}: its \
+         firmware is faulty; {}flash its firmware again",
         if *found == State::Active { "its output may be driven: switch off its supply, then " } else { "" }
     )]
     WrongState {
@@ -124,7 +124,7 @@ pub enum DeviceError {
         command: &'static str,
         /// The state in the board's answer.
         found: State,
-        /// The state that the command leads to.
+        /// The state that the command results in.
         expected: State,
     },
     /// The cable was pulled, or the other end closed the line.
@@ -135,28 +135,28 @@ pub enum DeviceError {
         /// The error that the link reported.
         closed: LinkClosed,
     },
-    /// The board's count of received bytes started again: it was reset, or another host connected to it.
+    /// The board's count of received bytes restarted: the board was reset, or another host connected to it.
     #[error("the board on {port} restarted during: {command}; connect again and upload the scene again")]
     Restarted {
         /// Name of the link.
         port: String,
-        /// The command that was under way.
+        /// The current command.
         command: &'static str,
     },
-    /// The board answers, but an upload makes no progress although its chunks were sent again.
+    /// The board answers, but an upload makes no progress although its chunks were resent.
     #[error(
-        "the upload to {port} does not get past {arrived_bytes} of {total_bytes} bytes; the line damages what is sent: \
+        "the upload to {port} is stuck at {arrived_bytes} of {total_bytes} bytes because the line damages data: \
          try another cable or a lower line rate"
     )]
     UploadStalled {
         /// Name of the link.
         port: String,
-        /// Bytes of the scene or bitmap that the board has.
+        /// Bytes of the scene or bitmap received by the board.
         arrived_bytes: usize,
         /// Bytes of the whole scene or bitmap.
         total_bytes: usize,
     },
-    /// The board answers, but acknowledges no further byte of an upload.
+    /// The board answers, but stops acknowledging an upload.
     #[error(
         "the board on {port} has acknowledged no byte of an upload for {} s, and has {arrived_bytes} of {total_bytes} \
          bytes: reset it, then start again",
@@ -165,46 +165,46 @@ pub enum DeviceError {
     UploadTooSlow {
         /// Name of the link.
         port: String,
-        /// Bytes of the scene or bitmap that the board has.
+        /// Bytes of the scene or bitmap received by the board.
         arrived_bytes: usize,
         /// Bytes of the whole scene or bitmap.
         total_bytes: usize,
         /// How long the host waited, on the link's clock.
         waited: Duration,
     },
-    /// The board requests an upload from its start again and again, although all of it was sent.
+    /// The board requests a complete upload repeatedly.
     #[error(
-        "the board on {port} wants all {total_bytes} bytes of an upload again, although they were sent {times} times: \
-         reset the board; if that does not help, flash its firmware anew"
+        "the board on {port} requests all {total_bytes} bytes of an upload again, although they were sent {times} \
+         times: reset the board; if that does not help, flash its firmware again"
     )]
     UploadForgotten {
         /// Name of the link.
         port: String,
         /// Bytes of the scene or bitmap.
         total_bytes: usize,
-        /// How many times they were sent.
+        /// Number of times they were sent.
         times: u32,
     },
-    /// The caller ended the upload. The board plays what it played before.
+    /// The caller ended the upload. The board keeps its previous scene.
     #[error("the upload to {port} was interrupted: the board has no new scene")]
     Interrupted {
         /// Name of the link.
         port: String,
     },
-    /// The hello states a limit that cannot be one.
+    /// The hello states an invalid limit.
     #[error(
-        "the board on {port} states {limit} = {found} in its hello, which is no limit: flash its firmware anew; nothing was \
-         sent to it"
+        "the board on {port} states {limit} = {found} in its hello, which is not a valid limit: flash its \
+         firmware again; nothing was sent to it"
     )]
     Limit {
         /// Name of the link.
         port: String,
         /// Name of the limit.
         limit: &'static str,
-        /// The number that was found.
+        /// The value found.
         found: f64,
     },
-    /// The ticks of telemetry went back: two boards answer on one line, or the firmware is faulty.
+    /// The ticks of telemetry went backwards: two boards share a line, or the firmware is faulty.
     #[error(
         "the telemetry of the board on {port} went back from tick {last_tick} to {tick}: its firmware is faulty, or another \
          board answers on the same line; disconnect it, and start again"
@@ -212,13 +212,13 @@ pub enum DeviceError {
     TelemetryBackwards {
         /// Name of the link.
         port: String,
-        /// The latest tick before.
+        /// The latest tick so far.
         last_tick: u32,
-        /// The earlier tick that came after it.
+        /// The earlier tick received after it.
         tick: u32,
     },
     /// A bitmap does not have width times height samples.
-    #[error("bitmap {crc32:#010x} is {width} by {height}, but has {found} samples; it needs one for each place")]
+    #[error("bitmap {crc32:#010x} is {width} by {height}, but has {found} samples; it needs width times height")]
     BitmapSize {
         /// CRC-32 of the samples.
         crc32: u32,

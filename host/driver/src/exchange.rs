@@ -21,59 +21,57 @@ pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer is ignored.
 const UNAWAITED: u16 = 0;
-/// Longest time to an answer, from the time at which the request has reached the board, and longest time without any
-/// byte leaving a line on which bytes are under way.
+/// Timeout of an answer after the request has reached the board; also of a line on which no byte moves.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
-/// Time after which a request without an answer is sent again, measured as [`ANSWER_TIMEOUT`] is: its frame may have
-/// been damaged.
+/// Retry interval of a request, measured like [`ANSWER_TIMEOUT`], in case its frame was damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
-/// Longest time to the answer to a request, however much arrives meanwhile.
+/// Timeout of a request regardless of other traffic.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
-/// Longest time between two calls of a caller who wants to know what is waited for.
+/// Longest interval between calls of a watcher.
 const WAITING_PERIOD: Duration = Duration::from_millis(100);
-/// Time to the next try when the board is busy.
+/// Retry interval while the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Credit that uploads leave for commands and pings, bytes: a dozen of them. Those that the line loses take credit
-/// until a command is answered.
+/// Credit reserved by uploads for commands and pings, bytes: about a dozen. Lost ones take up credit until a command is
+/// answered.
 const RESERVE_LEN: usize = 256;
-/// Credit that commands leave for pings, bytes: the ten that may be unanswered after a minute.
+/// Credit reserved by commands for pings, bytes: the ten that may be unanswered after a minute.
 const PING_RESERVE_LEN: usize = 128;
 
-/// What a call waits for; see [`Device::while_waiting`](crate::Device::while_waiting).
+/// State of a waiting call; see [`Device::while_waiting`](crate::Device::while_waiting).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Waiting {
-    /// The command whose answer is awaited, or the upload whose bytes the board is to acknowledge.
+    /// The command whose answer is awaited, or the upload to be acknowledged.
     pub command: &'static str,
-    /// For how long the board has not answered, or not acknowledged another byte.
+    /// Time since the board's last answer, or since it last acknowledged a byte.
     pub waited: Duration,
-    /// Time after which the call gives up.
+    /// Timeout of the call.
     pub waited_max: Duration,
 }
 
-/// Is told what a call waits for, and may end it.
+/// A function that observes a waiting call, and may end it.
 pub(super) type Watcher = Box<dyn FnMut(&Waiting) -> ControlFlow<()> + Send>;
 
 /// The connection to a board that has answered the hello, with everything in transit in both directions.
 pub(super) struct Exchange<L> {
     link: L,
     decoder: Decoder,
-    /// Frames that the decoder rejected before the hello. They were left over from an earlier connection.
+    /// Frames rejected by the decoder before the hello, left over from an earlier connection.
     rejected_before: u32,
     incoming: Vec<u8>,
     credit: Credit,
     sequence: u16,
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
-    /// The last answer was to a request that had been sent before.
+    /// Whether the last answer was to a resent request.
     repeated: bool,
     next_chunk: Option<u16>,
     stream: Option<StreamReport>,
-    /// The next answer starts a new stream; reports before it belong to the old one.
+    /// Whether the next answer starts a new stream, so that earlier reports belong to the old one.
     stream_begins: bool,
     events: VecDeque<Event>,
     /// Tick of the last telemetry message.
     telemetry_tick: Option<u32>,
-    /// Time spent reading since bytes last arrived.
+    /// Time spent reading since the last received bytes.
     quiet: Duration,
     watcher: Option<Watcher>,
 }
@@ -120,7 +118,7 @@ impl<L: Link> Exchange<L> {
         self.link
     }
 
-    /// Frames from the board that arrived damaged since the hello.
+    /// Number of damaged frames from the board since the hello.
     pub(super) fn frames_rejected(&self) -> u32 {
         self.decoder.rejected().wrapping_sub(self.rejected_before)
     }
@@ -133,17 +131,17 @@ impl<L: Link> Exchange<L> {
         self.link.now()
     }
 
-    /// Makes the link ping the board whenever nothing was sent for `period`.
+    /// Sets the ping period.
     pub(super) fn ping_every(&mut self, period: Duration) {
         self.link.keep_alive(period);
     }
 
-    /// Calls `watcher` while a call waits.
+    /// Sets a watcher of waiting calls.
     pub(super) fn set_watcher(&mut self, watcher: Watcher) {
         self.watcher = Some(watcher);
     }
 
-    /// Tells the watcher what is waited for, and returns the time until it wants to hear of it again.
+    /// Calls the watcher, and returns the time until its next call.
     pub(super) fn watch(&mut self, waiting: &Waiting) -> Result<Duration, DeviceError> {
         match self.watcher.as_mut().map(|watcher| watcher(waiting)) {
             None => Ok(Duration::MAX),
@@ -210,7 +208,7 @@ impl<L: Link> Exchange<L> {
         last_deadline: Duration,
     ) -> Result<Result<Accepted, Refusal>, DeviceError> {
         let started = self.link.now();
-        // When bytes last left the line towards the board, until the request itself did.
+        // The time at which bytes last left the line towards the board, until the request itself left.
         let (mut moved_at, mut settled, mut arrived) = (started, self.credit.settled(), false);
         let mut sent_at = None;
         self.awaited.clear();
@@ -265,13 +263,13 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
-    /// Whether the last answer was to a repetition of its command. The board may then have executed the command before.
+    /// Whether the last answer was to a resent command, which the board may have executed twice.
     pub(super) fn repeated(&self) -> bool {
         self.repeated
     }
 
-    /// The outcome of a command. A repeated command may be refused because the board executed the first copy and only
-    /// the answer to it was lost.
+    /// The outcome of a command. A resent command may be refused if the board executed the first copy, and only its
+    /// answer was lost.
     fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
         match answer.outcome {
             Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {
@@ -281,7 +279,7 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    /// Compares the state in the answer to an accepted command with the one that the command leads to.
+    /// Compares the state in the answer with the state that the accepted command results in.
     fn check_state(&self, command: &Command, found: State) -> Result<(), DeviceError> {
         match state_after(command) {
             Some(expected) if expected != found => Err(DeviceError::WrongState {

@@ -1,4 +1,4 @@
-//! The hello: identifies the board and the protocol that it speaks.
+//! The hello: identifies the board and its protocol version.
 
 use std::time::Duration;
 
@@ -9,17 +9,17 @@ use frixel_wire::payload::{Payload, hello_request_frame};
 use super::error::{DeviceError, LinkClosed};
 use super::link::Link;
 
-/// Most ticks a second that a hello may claim: 25 times those of the fastest board.
+/// Largest tick rate accepted in a hello, Hz: 25 times the fastest board's.
 const TICK_HZ_MAX: u32 = 1_000_000;
-/// Number of hello requests before the board counts as absent.
+/// Number of hello requests before the board is treated as absent.
 const TRIES: u32 = 5;
-/// Time to wait for the answer to each of them.
+/// Timeout of each hello request.
 const TRY_TIMEOUT: Duration = Duration::from_millis(150);
 
 /// Requests the hello. Returns an error if the board speaks another version of the protocol.
 pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Result<Hello, DeviceError> {
     let mut buffer = [0; FRAME_MAX_LEN];
-    // The zero byte ends a partial frame that an earlier host may have left in the board.
+    // The zero byte ends a partial frame that an earlier host may have left on the board.
     let request = [&[0], hello_request_frame(&mut buffer)?].concat();
     let started = link.now();
     let mut heard_bytes = 0;
@@ -37,7 +37,7 @@ pub(super) fn request_hello<L: Link>(link: &mut L, decoder: &mut Decoder) -> Res
     Err(DeviceError::NoHello { port: link.name().into(), waited: link.now().saturating_sub(started), heard_bytes })
 }
 
-/// Refuses limits that no scene can be compiled for. A capacitance and a resistance that are not stated are infinite.
+/// Refuses limits for which no scene can be compiled. An unstated capacitance or resistance is infinite.
 fn check_limits(hello: &Hello, port: String) -> Result<(), DeviceError> {
     let limits = &hello.limits;
     let numbers = [

@@ -1,4 +1,4 @@
-//! The pings of a link: when the next one is due, and which ones the board has answered.
+//! The pings of a link: when the next one is due, and which ones were answered.
 
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
@@ -10,55 +10,53 @@ use frixel_wire::payload::Payload;
 
 use super::command::frame_of;
 
-/// How long a link keeps the board alive after the application's last call. The link then sends nothing more, and the
-/// board sets its output to zero when its host timeout has passed.
+/// Time for which a link keeps the board alive after the application's last call. Afterwards the link sends nothing,
+/// and the board sets its output to zero after its host timeout.
 pub const KEEP_ALIVE_TIMEOUT: Duration = Duration::from_secs(1);
-/// Sequence numbers of pings, one after the other. No request has them. They are so many that no two pings under way
-/// have the same.
+/// Sequence numbers of pings, used in turn and by no other request. There are enough that no two pings under way share
+/// one.
 pub(super) const PING_SEQUENCES: RangeInclusive<u16> = 0xffc0..=0xffff;
-/// Longest frame that may be a ping: a zero byte, 9 bytes, and two of the encoding.
+/// Longest frame of a ping: a zero byte, 9 bytes, and two of the encoding.
 const PING_MAX_LEN: usize = 12;
-/// Pings without an answer that no other follows at its time. A board that is slow, or whose line is, then does not
-/// spend its time on pings.
+/// Largest number of unanswered pings at the normal period, so that a slow board or line is not flooded with pings.
 const UNANSWERED_MAX: usize = 2;
-/// Pings after those which are made up for while they count as damaged, for a board that has answered one. So many are
-/// damaged in a row once in a hundred thousand pings on a line that inverts one bit in a thousand.
+/// Largest number of pings sent in place of damaged ones, to a board that has answered one before. On a line with a bit
+/// error rate of 1/1000, this many are damaged in a row once in a hundred thousand pings.
 const MADE_UP_MAX: usize = 3;
-/// Round trips of the last answered ping after which pings without an answer count as damaged.
+/// Number of round trips after which an unanswered ping is treated as damaged.
 const ROUND_TRIPS: u32 = 4;
-/// Longest time after two pings without an answer to the next, and time after those that are made up for.
+/// Longest interval to the next ping after two unanswered ones; also the interval after those treated as damaged.
 const LOST_AFTER: Duration = Duration::from_millis(750);
-/// How often that time is doubled for further pings without an answer.
+/// Largest number of doublings of this interval.
 const DOUBLINGS_MAX: usize = 10;
-/// Shortest period. Without it, a period of zero could block a call for ever.
+/// Shortest period. A period of zero could block a call for ever.
 const PERIOD_MIN: Duration = Duration::from_millis(1);
 
 /// The pings of a [`Link`](crate::Link), which keep a board alive.
 ///
-/// A ping is due when nothing was written for the period, but not while the two before it are unanswered: a board that
-/// answers more slowly than it is pinged would have more and more of them ahead of every command. Two that stay
-/// unanswered for the period, and for four times the last round trip, count as damaged, and a third one is due; on a
-/// board that has answered one, two more after that. The next one is due 0.75 s later, and each further one after twice
-/// the time; a board that takes longer than 0.75 s for one frame counts as silent. A frame that arrives damaged counts
-/// as the answer to a ping.
+/// A ping is due when nothing was written for one period. No ping is due while the previous two are unanswered, since
+/// pings would otherwise pile up ahead of every command on a slow board. Two pings that stay unanswered for one period
+/// and four round trips count as damaged, and a third one is due; if the board has answered before, two more follow.
+/// The next ping is due 0.75 s later, and each further one after twice that time: a board that takes longer than 0.75 s
+/// per frame counts as silent. A damaged frame counts as the answer to a ping.
 ///
-/// No ping is due once the application has made no call to the link for [`KEEP_ALIVE_TIMEOUT`]: a board does not play
-/// on for a program that hangs. The next call resumes the pings.
+/// No ping is due once the application has not called the link for [`KEEP_ALIVE_TIMEOUT`], so that a board does not
+/// play on for a program that hangs. The next call resumes the pings.
 ///
-/// A link asks [`Self::due_at`], writes [`Self::next_ping`] then, and passes everything that arrives to [`Self::hear`].
-/// It says when it writes, and if it also pings outside of calls, when these begin and end. Times are on the link's
-/// clock.
+/// A link calls [`Self::due_at`], writes [`Self::next_ping`] at that time, and passes all received bytes to
+/// [`Self::hear`]. It reports its writes and, if it also pings outside of calls, the start and end of calls. Times are
+/// on the link's clock.
 #[derive(Debug)]
 pub struct KeepAlive {
     period: Option<Duration>,
     last_write: Duration,
-    /// When the application's last call returned; `None` during a call.
+    /// Time at which the application's last call returned; `None` during a call.
     last_call: Option<Duration>,
     /// Sequence number of the next ping.
     next: u16,
-    /// Sequence number of each ping without an answer, and when it was written.
+    /// Sequence number and time of each unanswered ping.
     unanswered: VecDeque<(u16, Duration)>,
-    /// Time from the last answered ping to its answer; `None` before the first answer.
+    /// Round trip of the last answered ping; `None` before the first answer.
     round_trip: Option<Duration>,
     decoder: Decoder,
 }
@@ -78,29 +76,28 @@ impl Default for KeepAlive {
 }
 
 impl KeepAlive {
-    /// Sets the time without a write after which a ping is due. Without it, none is.
+    /// Sets the time without a write after which a ping is due. By default, no pings are sent.
     pub fn set_period(&mut self, period: Duration) {
         self.period = Some(period.max(PERIOD_MIN));
     }
 
-    /// Bytes other than a ping are written at the time `now`.
+    /// Records a write of bytes other than a ping.
     pub fn wrote(&mut self, now: Duration) {
         self.last_write = now;
     }
 
-    /// The application begins a call that may wait, and keeps the board alive while it does.
+    /// Records that the application begins a call that may wait, during which the board is kept alive.
     pub fn enter_call(&mut self) {
         self.last_call = None;
     }
 
-    /// The application's call returns at the time `now`. Before the first call of this method, it counts as being in a
-    /// call.
+    /// Records that the application's call returns. Before the first use of this method, a call is assumed to be in
+    /// progress.
     pub fn leave_call(&mut self, now: Duration) {
         self.last_call = Some(now);
     }
 
-    /// When the next ping is due, at the time `now`; `None` without a period, or for an application that has stopped
-    /// calling.
+    /// Time at which the next ping is due; `None` without a period, or if the application has stopped calling.
     pub fn due_at(&self, now: Duration) -> Option<Duration> {
         let period = self.period?;
         if self.last_call.is_some_and(|last_call| now.saturating_sub(last_call) >= KEEP_ALIVE_TIMEOUT) {
@@ -119,10 +116,10 @@ impl KeepAlive {
         Some(held_back.max(self.last_write + period))
     }
 
-    /// The bytes of the next ping, which the link writes at the time `now`.
+    /// Bytes of the next ping, to be written at the time `now`.
     ///
-    /// They start with a zero byte while the ping before is unanswered, whose own last byte may have been damaged: one
-    /// damaged byte then costs one ping.
+    /// They start with a zero byte if the previous ping is unanswered, since its last byte may have been damaged. One
+    /// damaged byte then costs only one ping.
     pub fn next_ping(&mut self, now: Duration) -> Vec<u8> {
         self.wrote(now);
         let mut bytes = if self.unanswered.is_empty() { Vec::new() } else { vec![0] };
@@ -136,8 +133,7 @@ impl KeepAlive {
         bytes
     }
 
-    /// Takes the bytes that have arrived at the time `now`, and looks for answers to pings in them. Returns whether
-    /// there is one.
+    /// Searches received bytes for answers to pings, and returns whether there is one.
     pub fn hear(&mut self, bytes: &[u8], now: Duration) -> bool {
         let mut input = bytes;
         let (before, rejected_before) = (self.unanswered.len(), self.decoder.rejected());
@@ -146,7 +142,7 @@ impl KeepAlive {
                 continue;
             };
             if let Some(position) = self.unanswered.iter().position(|(sequence, _)| *sequence == answer.sequence) {
-                // The board answers in order: a ping before this one is lost, or its answer is.
+                // The board answers in order, so an earlier ping or its answer is lost.
                 let answered = self.unanswered.drain(..=position).next_back();
                 self.round_trip = answered.map(|(_, written)| now.saturating_sub(written));
             }

@@ -6,10 +6,9 @@ use super::error::LinkClosed;
 use super::keep_alive::KeepAlive;
 use super::link::{Link, Written};
 
-/// A byte stream to one board, with the clock that deadlines are measured on.
+/// A byte stream to one board, and the clock of its deadlines.
 ///
-/// For example a TCP connection, a browser's serial port behind an import that waits, or a simulated line
-/// with a virtual clock.
+/// For example a TCP connection, a browser's serial port, or a simulated line with a virtual clock.
 pub trait ByteStream {
     /// Queues bytes for sending, without waiting for the other end to take them.
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed>;
@@ -25,18 +24,17 @@ pub trait ByteStream {
     fn name(&self) -> &str;
 }
 
-/// A [`Link`] that pings only while it is read.
+/// A [`Link`] that pings only while it is being read.
 ///
-/// An application over such a link calls [`Device::wait`](crate::Device::wait) or
-/// [`Device::keep_alive`](crate::Device::keep_alive) at least as often as the board's host timeout demands. The
-/// pings end when the application stops calling, so the link needs no
-/// [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
+/// An application over such a link must call [`Device::wait`](crate::Device::wait) or
+/// [`Device::keep_alive`](crate::Device::keep_alive) often enough for the board's host timeout. Pings end when the
+/// application stops calling, so the link needs no [`KEEP_ALIVE_TIMEOUT`](crate::KEEP_ALIVE_TIMEOUT).
 ///
 /// ```
 /// use std::time::Duration;
 /// use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink};
 ///
-/// /// A line with nobody at its other end. Each wait passes at once, on the line's own clock.
+/// /// A line without a board. Each wait passes at once, on the line's own clock.
 /// struct DeadLine(Duration);
 ///
 /// impl ByteStream for DeadLine {

@@ -1,4 +1,4 @@
-//! Uploads: chunks sent within the credit, and sent again from the first one that was lost.
+//! Uploads: chunks sent within the credit, and resent from the first lost one.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -12,16 +12,16 @@ use super::error::DeviceError;
 use super::exchange::{Exchange, Waiting};
 use super::link::Link;
 
-/// Time without progress after which the board's next chunk is requested.
+/// Time without progress after which the end of the upload is requested, to learn the board's next chunk.
 const STALL_AFTER: Duration = Duration::from_millis(150);
-/// Longest time in which the board acknowledges no further byte.
+/// Timeout of an acknowledgement.
 const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(10);
-/// Most restarts in a row of an upload from the same chunk.
+/// Largest number of consecutive restarts of an upload from the same chunk.
 const TRIES: u32 = 3;
-/// Most starts of an upload whose outcome stays unknown.
+/// Largest number of starts of an upload with an unknown outcome.
 const STARTS: u32 = 3;
 
-/// A compiled scene, and the bitmaps that it names.
+/// A compiled scene and its bitmaps.
 #[derive(Clone, Debug)]
 pub struct Upload<'a> {
     /// The scene's bytes, in the layout of `frixel-layers`.
@@ -83,7 +83,7 @@ pub(super) struct UploadCounts {
     pub(super) chunks_lost: u64,
 }
 
-/// Uploads the scene and bitmaps that the board does not hold. They do not play before a commit.
+/// Uploads a scene and its bitmaps that the board does not hold. They do not play before a commit.
 pub(super) fn send<L: Link>(
     exchange: &mut Exchange<L>,
     upload: &Upload,
@@ -146,7 +146,7 @@ impl Bitmap<'_> {
     }
 }
 
-/// How a transfer ended.
+/// Outcome of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum End {
     /// The board has all of it.
@@ -167,12 +167,12 @@ struct Transfer<'a, L> {
     next: usize,
     /// For each chunk, the position of its end when it was last sent.
     sent_to: Vec<u64>,
-    /// The furthest chunk that the board has ever expected.
+    /// The furthest chunk expected by the board so far.
     furthest: usize,
-    /// Times in a row that chunks were sent again without the board getting further than before.
+    /// Consecutive resends without further progress.
     tries: u32,
     lost: u64,
-    /// When the board got further than before.
+    /// Time of the last progress.
     advanced_at: Duration,
 }
 
@@ -203,7 +203,7 @@ impl<'a, L: Link> Transfer<'a, L> {
                     return Ok(End::Unknown);
                 }
                 Err(Refusal::UploadIncomplete { next_chunk }) => {
-                    // A report that came before the answer expects chunks that have arrived since.
+                    // Discard a report sent before the answer, since further chunks have arrived.
                     self.exchange.take_next_chunk();
                     self.send_again_from(next_chunk)?;
                 }
@@ -213,9 +213,9 @@ impl<'a, L: Link> Transfer<'a, L> {
     }
 
     /// Sends chunks from `next` to the last one, and goes back when the board reports a loss. Returns early if there is
-    /// no credit for [`STALL_AFTER`], since lost bytes also use up credit. The caller then requests the end of the
-    /// upload, as after the last chunk. If that is too early, the board refuses it with the number of the chunk that it
-    /// expects. Any answer corrects the credit.
+    /// no credit for [`STALL_AFTER`], since lost bytes also take up credit. The caller then requests the end of the
+    /// upload, as after the last chunk. If that is too early, the board's refusal contains the next expected chunk. Any
+    /// answer corrects the credit.
     fn send_chunks(&mut self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<(), DeviceError> {
         let mut sent_at = self.exchange.now();
         while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
@@ -233,7 +233,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.report(report)
     }
 
-    /// Ends an upload that the board has not acknowledged a byte of for too long. Returns the time until the next call.
+    /// Fails if the board has not acknowledged a byte of an upload for too long. Returns the time until the next check.
     fn check_advance(&mut self) -> Result<Duration, DeviceError> {
         let waited = self.exchange.now().saturating_sub(self.advanced_at);
         if waited >= ACKNOWLEDGE_TIMEOUT {
@@ -242,7 +242,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.exchange.watch(&Waiting { command: self.doing, waited, waited_max: ACKNOWLEDGE_TIMEOUT })
     }
 
-    /// Reports the progress, and ends the upload if the caller says so.
+    /// Reports the progress, and ends the upload at the caller's request.
     fn report(&self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<(), DeviceError> {
         if report(self.arrived_bytes()).is_break() { Err(self.exchange.interrupted()) } else { Ok(()) }
     }
@@ -274,8 +274,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         Ok(true)
     }
 
-    /// Handles the board's last report. If the chunk that the board expects has already left the line, that chunk was
-    /// lost.
+    /// Handles the board's last report. An expected chunk that has already left the line was lost.
     fn handle_progress(&mut self) -> Result<(), DeviceError> {
         let Some(expected) = self.exchange.take_next_chunk() else {
             return Ok(());

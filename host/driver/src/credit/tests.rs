@@ -57,7 +57,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 }
 
 proptest! {
-    /// Credit never exceeds the room of the board, whichever bytes the line loses and whatever the board's count is.
+    /// Credit never exceeds the room of the board, for any lost bytes and any count of the board.
     #[test]
     fn bytes_under_way_are_never_underestimated(steps in steps(), start in any::<u32>()) {
         let mut line = Line { written: u64::from(start), ..Line::default() };
@@ -68,7 +68,7 @@ proptest! {
         }
     }
 
-    /// An answer that nothing follows on the line corrects the credit for all earlier losses.
+    /// An answer that is the last on the line corrects the credit for all earlier losses.
     #[test]
     fn an_answer_settles_what_was_lost(steps in steps(), later in 1_u64..192) {
         let mut line = Line::default();

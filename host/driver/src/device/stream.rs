@@ -11,23 +11,23 @@ use crate::error::DeviceError;
 use crate::exchange::StreamReport;
 use crate::link::Link;
 
-/// Operation that error messages name while samples are sent.
+/// The name of streaming in error messages.
 const STREAMING: &str = "stream";
-/// Duration of the default start level, s. An operating system may delay a host for about this long.
+/// Duration of the default start level, s: about the longest delay of a host by its operating system.
 const START_S: f64 = 0.05;
 
-/// How a stream is played.
+/// Parameters of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamSettings {
-    /// Samples a second, from 1 to the board's ticks a second.
+    /// Samples per second, from 1 to the board's tick rate.
     pub sample_hz: u32,
-    /// Samples that the board collects before it plays, 1 to 800. Their duration is the stream's latency, and the
-    /// longest pause of the host that causes no underrun.
+    /// Samples buffered before the board starts to play, 1 to 800. Their duration is the stream's latency, and the
+    /// longest pause of the host without an underrun.
     pub start_level: u16,
 }
 
 impl StreamSettings {
-    /// Settings with a start level of 50 ms, or the largest start level if the board's buffer is shorter.
+    /// Settings with a start level of 50 ms, or the largest one if the board's buffer is shorter.
     pub fn new(sample_hz: u32) -> Self {
         let level = (START_S * f64::from(sample_hz)).ceil();
         Self { sample_hz, start_level: level.clamp(1.0, f64::from(STREAM_START_LEVEL_MAX)) as u16 }
@@ -39,7 +39,7 @@ impl StreamSettings {
 pub struct StreamStatus {
     /// Samples sent.
     pub sent: u64,
-    /// Times that the board ran out of samples and faded the stream out.
+    /// Underruns, at each of which the board faded the stream out.
     pub underruns: u32,
     /// Runs of samples that the line lost.
     pub gaps: u32,
@@ -49,12 +49,12 @@ pub struct StreamStatus {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StreamProgress {
     samples: u64,
-    /// The board's first report. The board counts from power-on, so later counts are relative to this report.
+    /// The board's first report. It counts from power-on, so later counts are relative to this report.
     first: Option<StreamReport>,
 }
 
 impl<L: Link> Device<L> {
-    /// Starts a stream for the stream layers of the playing scene. It replaces a stream under way.
+    /// Starts a stream for the stream layers of the playing scene, in place of a current stream.
     ///
     /// Send the samples with [`Self::send_samples`], and call [`Self::wait`] between two calls.
     ///
@@ -80,7 +80,7 @@ impl<L: Link> Device<L> {
     }
 
     /// Sends as many samples as the board has room for, and returns their number. A sample of 0 is the layer's low
-    /// friction, 65,535 its high one. Does not wait.
+    /// friction, 65,535 its high friction. Does not wait.
     ///
     /// Sends nothing if no stream is under way.
     pub fn send_samples(&mut self, samples: &[u16]) -> Result<usize, DeviceError> {
@@ -111,7 +111,7 @@ impl<L: Link> Device<L> {
         self.request(Command::EndStream)
     }
 
-    /// The state of the stream that was started last; `None` before the first one.
+    /// The state of the last stream; `None` before the first one.
     pub fn stream_status(&self) -> Option<StreamStatus> {
         let StreamProgress { samples, first } = self.stream?;
         let (Some(first), Some(now)) = (first, self.exchange.stream()) else {

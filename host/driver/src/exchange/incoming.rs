@@ -11,12 +11,12 @@ use super::super::error::DeviceError;
 use super::super::link::Link;
 use super::{ANSWER_TIMEOUT, Exchange, vanished};
 
-/// Most that one read adds to the measured silence of a board, so that a host that was suspended does not count its own
-/// pause as the board's silence.
+/// Largest contribution of one read to the measured silence of a board, so that a suspended host does not count its own
+/// pause.
 const LISTEN_MAX: Duration = Duration::from_millis(100);
-/// Operation that error messages name when no command is under way.
+/// The name of waiting in error messages.
 const WAITING: &str = "wait";
-/// Events stored for a caller who does not fetch them; the oldest are dropped first.
+/// Largest number of stored events; the oldest are dropped first.
 const EVENTS_MAX: usize = 4096;
 
 /// A board's report on its stream.
@@ -24,7 +24,7 @@ const EVENTS_MAX: usize = 4096;
 pub(in super::super) struct StreamReport {
     /// Index after the last sample that the board has room for.
     pub(in super::super) limit: u32,
-    /// Times that a stream ran out of samples, since the board's power-on.
+    /// Underruns since the board's power-on.
     pub(in super::super) underruns: u32,
     /// Runs of samples that were lost, since the board's power-on.
     pub(in super::super) gaps: u32,
@@ -64,7 +64,7 @@ impl<L: Link> Exchange<L> {
         }
         let mut input = incoming.as_slice();
         while let Some(payload) = self.decoder.next_frame(&mut input) {
-            // Hellos, and messages that this version does not know, are ignored.
+            // Ignore hellos, and messages unknown to this version.
             if let Ok(Payload::FromBoard(message)) = Payload::parse_from_board(payload) {
                 self.handle(message, doing)?;
             }
@@ -79,7 +79,7 @@ impl<L: Link> Exchange<L> {
                 self.update_credit(answer.received_bytes, doing)?;
                 let awaited = self.awaited.iter().find(|one| one.sequence == answer.sequence);
                 let written = self.link.written();
-                // Lost chunks take credit until then: that ends an upload that does not get on.
+                // Lost chunks take up credit until then; this ends an upload without progress.
                 if !self.awaited.is_empty() && written.last_ping == Some(answer.sequence) {
                     self.credit.answered(written.bytes, written.bytes);
                 }

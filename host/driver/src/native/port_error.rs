@@ -21,14 +21,14 @@ pub enum PortError {
     },
     /// This user lacks the permission to open the port.
     #[error(
-        "no permission to open {port}; on Linux its group may, usually `dialout` or `uucp`: add yourself with \
-         `sudo usermod -aG dialout $USER` and log in again"
+        "no permission to open {port}; on Linux, members of its group (usually `dialout` or `uucp`) may open it: \
+         join it with `sudo usermod -aG dialout $USER` and log in again"
     )]
     NoPermission {
         /// Path of the port.
         port: String,
     },
-    /// The operating system refuses for another reason, for example because the path names no serial port.
+    /// Any other refusal by the operating system, for example because the path is not a serial port.
     #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
     NotOpened {
         /// Path of the port.

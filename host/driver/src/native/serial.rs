@@ -22,16 +22,16 @@ use shared::{Shared, State};
 /// Default line rate, in bits a second. Pseudo-terminals and native USB ignore it.
 pub const DEFAULT_BAUD: u32 = 2_000_000;
 
-/// How long opening waits for a port that is in use. A pseudo-terminal stays exclusive until its server notices that
-/// the previous client has gone.
+/// Time to wait for a port in use. A pseudo-terminal stays exclusive until its server notices that the previous client
+/// has gone.
 const BUSY_PATIENCE: Duration = Duration::from_millis(700);
 /// Time between two attempts to open a port that is in use.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(20);
-/// How often the reading thread checks whether the link is being dropped.
+/// Interval at which the reading thread checks whether the link is being dropped.
 const READ_POLL: Duration = Duration::from_millis(20);
-/// How long the operating system may accept no bytes before the link closes.
+/// Time without progress of a write after which the link closes.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(500);
-/// How long a drop waits for the last frames to be written and the port to close.
+/// Time to wait in a drop for the last frames to be written and the port to close.
 const DROP_WAIT: Duration = Duration::from_millis(50);
 
 /// A serial port, opened for exclusive use: a second program that opens it gets [`PortError::Busy`].
@@ -118,7 +118,7 @@ impl Link for SerialLink {
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
         let mut state = self.shared.lock();
         state.pings.enter_call();
-        // Wake the writing thread, which may have stopped to ping.
+        // Wake the writing thread, which may have stopped pinging.
         self.shared.queued.notify_one();
         let (mut state, _) = self
             .shared
@@ -164,7 +164,7 @@ impl Drop for SerialLink {
         }
         state.closing = true;
         self.shared.queued.notify_one();
-        // A thread that is blocked in the operating system ends later, and closes the port then.
+        // A thread blocked in the operating system ends later, and then closes the port.
         let _ = self.shared.ended.wait_timeout_while(state, DROP_WAIT, |state| state.threads > 0);
     }
 }

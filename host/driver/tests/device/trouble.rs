@@ -82,8 +82,8 @@ fn a_state_that_the_command_does_not_lead_to_is_an_error() {
     line_of(&mut device).change_answers(|answer| answer.state = State::Active);
     assert_eq!(
         device.disarm().unwrap_err().to_string(),
-        "the board on the virtual line accepted disarm and then said that it is Active, not Disarmed: its firmware is \
-         faulty; its output may be driven: switch off its supply, then flash its firmware anew"
+        "the board on the virtual line accepted disarm and then reported that it is Active, not Disarmed: its \
+         firmware is faulty; its output may be driven: switch off its supply, then flash its firmware again"
     );
 }
 
@@ -94,7 +94,7 @@ fn something_else_answers() {
     line.to_host_weather = Box::new(|_, _| Fate::Lost);
     let error = refused_connection(line);
     assert!(matches!(error, DeviceError::NoHello { heard_bytes: 9, .. }), "{error:?}");
-    assert!(error.to_string().contains("something else talks there"), "{error}");
+    assert!(error.to_string().contains("something else was received"), "{error}");
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn a_hello_whose_limits_are_no_limits_is_refused() {
     for (name, spoil) in spoilt {
         let error = refused_connection(with_hello(spoil));
         assert!(matches!(error, DeviceError::Limit { limit, .. } if limit == name), "{error}");
-        assert!(error.to_string().contains("flash its firmware anew"), "{error}");
+        assert!(error.to_string().contains("flash its firmware again"), "{error}");
     }
 }
 

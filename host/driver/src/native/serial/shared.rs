@@ -9,8 +9,7 @@ use serialport::SerialPort;
 use crate::keep_alive::KeepAlive;
 use crate::link::Written;
 
-/// Most received bytes that are stored for a caller that does not read: 20 s of telemetry at 1 kHz. Further bytes are
-/// dropped.
+/// Largest number of stored received bytes: 20 s of telemetry at 1 kHz. Further bytes are dropped.
 const RECEIVE_BUFFER_MAX_LEN: usize = 1 << 20;
 
 /// The shared state, and signals for its changes.
@@ -30,9 +29,9 @@ pub(super) struct State {
     pub(super) written: Written,
     opened: Instant,
     pub(super) pings: KeepAlive,
-    /// Why the link has closed.
+    /// Reason why the link has closed.
     pub(super) closed: Option<String>,
-    /// The link is being dropped.
+    /// Whether the link is being dropped.
     pub(super) closing: bool,
     pub(super) threads: u8,
 }
