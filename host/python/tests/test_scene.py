@@ -75,7 +75,7 @@ def test_tables_make_a_scene() -> None:
     assert scene == Scene.parse(Scene.dict_text(tables))
     assert len(scene.layers) == 2
     assert 'say "hü"' in scene.layers[0]
-    with pytest.raises(SceneError, match="has a character that controls a terminal"):
+    with pytest.raises(SceneError, match="contains a control or invisible character"):
         Scene.from_dict({"layer": [{"kind": "constant", "friction_n": 0.26, "name": "\n\x7f\\"}]})
     with pytest.raises(ParameterError, match="a field is a text, a number, a list or a table, found None"):
         Scene.from_dict({"layer": [{"kind": None}]})

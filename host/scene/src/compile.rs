@@ -24,11 +24,11 @@ use super::titles::{LayerNumber, LayerTitle};
 use super::voltage::Voltage;
 use super::warning;
 
-/// Least number of ticks in half a carrier period that a board accepts.
+/// Smallest number of ticks in half a carrier period that a board accepts.
 const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
 /// Carrier frequency below which charge leaks through skin and felt friction falls, Hz (arXiv 2409.18725).
 const LEAKAGE_HZ: f64 = 250.0;
-/// Largest effective gap that a board takes, um.
+/// Largest effective gap that a board accepts, um.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const MM: f64 = 1e-3;
 /// Factor by which a draft lowers its largest voltage until the contact is narrower than the finger.
@@ -56,7 +56,7 @@ const VOLTAGE_MIN_V_RMS: f32 = 1.0;
 ///
 /// # Errors
 ///
-/// All mistakes for which a board with these limits refuses the scene, those of [`Scene::mistakes`] among them.
+/// Returns all mistakes for which a board with these limits refuses the scene, including [`Scene::mistakes`].
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
     let mut log = Log::resuming(&scene.source, &scene.mistakes).of_refusals();
     match assemble(scene, limits, tick_hz, &mut log) {
@@ -65,16 +65,16 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
     }
 }
 
-/// Compiles a scene for a preview, or for a simulator, whether a board plays it or not. What a board refuses is in
-/// [`Program::refusals`]; if there is any, the program is a draft.
+/// Compiles a scene for a preview or a simulator, even if a board would refuse it. [`Program::refusals`] lists the
+/// reasons; if there are any, the program is a draft.
 ///
-/// A draft keeps to what can be reached: friction, voltage, carrier and current are clamped, pictures are made coarser
-/// until they fit the board, regions are cut off at the screen's edge. A layer that cannot be played at all is absent,
-/// and a note says so. A tick may take longer than the board has time for.
+/// A draft stays within reach: friction, voltage, carrier and current are clamped, pictures are made coarser until they
+/// fit the board, and regions are cut off at the screen's edge. Layers that cannot be played are absent, and listed in
+/// a note. A tick may exceed the board's time limit.
 ///
 /// # Errors
 ///
-/// The file cannot be read: [`Scene::mistakes`] is not empty. Or there is no contact model of finger and coating.
+/// Fails if the file cannot be read ([`Scene::mistakes`] is not empty), or if finger and coating have no contact model.
 ///
 /// # Example
 ///
@@ -99,10 +99,9 @@ pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Resul
     }
 }
 
-/// Makes a program of all that is valid, and logs all mistakes. `None` if there is no contact model of finger and
-/// coating.
+/// Compiles everything that is valid, and logs all mistakes. `None` if finger and coating have no contact model.
 fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
-    // What follows from another mistake is not reported.
+    // Consequences of another mistake are not reported.
     let mut unreported = log.scratch();
     let mistakes = log.mistakes();
     let half_period_ticks = half_period_ticks(scene, tick_hz, log);
@@ -131,7 +130,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     }
     let mut header = header(scene, &voltage, &springs, effective_gap_um, half_period_s);
     let reach = reach(scene, &mut header, if are_springs_valid { &mut *log } else { &mut unreported })?;
-    // With other mistakes of drive, finger or coating, nobody knows what can be reached.
+    // The reach is unknown if drive, finger or coating have other mistakes.
     let is_reach_known = log.mistakes() == mistakes;
     let (finger, note) = PlayedFinger::of(&scene.profiles);
     if let Some(note) = note {
@@ -188,8 +187,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     Some(program)
 }
 
-/// The layers that can be played, and their records. A mistake that the first copy of a layer has is not reported for
-/// the others.
+/// Returns the layers that can be played, and their records. A mistake of the first copy of a layer is not repeated for
+/// the other copies.
 fn records<'s>(layers: impl Iterator<Item = &'s Layer>, lowering: &mut Lowering) -> (Vec<&'s Layer>, Vec<Record>) {
     let mut mistaken = None;
     let record = |layer: &'s Layer| {
@@ -207,7 +206,7 @@ fn records<'s>(layers: impl Iterator<Item = &'s Layer>, lowering: &mut Lowering)
     layers.filter_map(record).unzip()
 }
 
-/// Notes the layers of the scene that are not played, if there are any, at the first of them.
+/// Notes the layers that are absent from a draft, at the first of them.
 fn note_absent_layers(scene: &Scene, played: &[&Layer], log: &mut Log) {
     let is_absent = |layer: &&Layer| !played.iter().any(|other| std::ptr::eq(*other, *layer));
     let absent: Vec<&Layer> = scene.layers.iter().filter(is_absent).collect();
@@ -217,8 +216,7 @@ fn note_absent_layers(scene: &Scene, played: &[&Layer], log: &mut Log) {
     }
 }
 
-/// Maps layers to records. Only a layer that the host may change is certain to have its own record; others may have
-/// been merged.
+/// Maps layers to records. Only a live layer is certain to have its own record; others may have been merged.
 fn layer_map(scene: &Scene, titles: &[LayerTitle]) -> LayerMap {
     let record = |number: LayerNumber| {
         (0..).zip(titles).find_map(|(record, title)| (title.number() == number).then_some(record))
@@ -227,7 +225,7 @@ fn layer_map(scene: &Scene, titles: &[LayerTitle]) -> LayerMap {
     LayerMap::new(scene.layers.iter().zip(records))
 }
 
-/// Ticks in half a carrier period, those of the fastest carrier if the scene's is too fast.
+/// Ticks in half a carrier period; of the fastest possible carrier if the scene's is too fast.
 fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log) -> u32 {
     let place = scene.carrier.places.field("frequency_hz");
     let found = scene.carrier.frequency_hz;
@@ -252,7 +250,7 @@ fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log) -> u32 {
     whole as u32
 }
 
-/// Effective gap of coating and skin, at most what a board takes.
+/// Effective gap of coating and skin, limited to the board's largest.
 fn effective_gap_um(scene: &Scene, log: &mut Log) -> f64 {
     let found = scene.screen().coating_gap_um() + scene.finger().skin_gap_um;
     if found > EFFECTIVE_GAP_MAX_UM {
@@ -262,8 +260,7 @@ fn effective_gap_um(scene: &Scene, log: &mut Log) -> f64 {
     found.min(EFFECTIVE_GAP_MAX_UM)
 }
 
-/// What can be reached. If the contact would be wider than the finger, the voltage of the header is lowered until it is
-/// not.
+/// Returns the reach. Lowers the header's voltage until the contact is narrower than the finger.
 fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
     let error = match Reach::of(header) {
         Ok(reach) => return Some(reach),

@@ -1,11 +1,11 @@
-//! The errors of reading and compiling a scene file, as text for a person and as JSON for a program.
+//! Errors of reading and compiling a scene file, as text for people and as JSON for programs.
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::diagnostic::Diagnostic;
 
-/// Most mistakes that are reported at once.
+/// Largest number of reported mistakes.
 pub(super) const MISTAKES_MAX: usize = 100;
 
 /// A scene file cannot be read or compiled. The message has a line for each mistake.
@@ -14,10 +14,9 @@ pub(super) const MISTAKES_MAX: usize = 100;
 pub struct CompileError {
     /// The scene file's name, as it was given.
     pub file: String,
-    /// Mistakes and refusals, in the order of the file, then those of the files that it includes; at least one, at most
-    /// 100.
+    /// Mistakes and refusals in the order of the file, followed by those of included files; 1 to 100.
     pub diagnostics: Vec<Diagnostic>,
-    /// Whether there are more than those.
+    /// Whether there are more than these.
     pub has_more: bool,
 }
 
@@ -29,19 +28,23 @@ fn list(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl CompileError {
-    /// The mistakes of a file, of which no more than 100 are kept.
+    /// Creates the error with at most 100 of the mistakes.
     pub(super) fn new(file: String, mut diagnostics: Vec<Diagnostic>) -> Self {
         let has_more = diagnostics.len() > MISTAKES_MAX;
         diagnostics.truncate(MISTAKES_MAX);
         Self { file, diagnostics, has_more }
     }
 
-    /// One JSON object on one line: `file`; `unreadable`, null; `mistakes`, a list of objects with `file`, `line` and
-    /// `column`, both from one, `text`, the text at that position, `nearest`, the nearest valid name or null, and
-    /// `message`, a sentence; `has_more`, whether there are more mistakes than those 100. A caller that reads files sets `unreadable` to a text if it could not read the file.
+    /// One JSON object on one line. A caller that reads files sets `unreadable` to a text if it could not read the
+    /// file.
+    ///
+    /// - `file`, and `unreadable`, which is null
+    /// - `mistakes`: objects with `file`, `line` and `column` (both from one), `text` (the text at that position),
+    ///   `nearest` (the nearest valid name, or null) and `message` (a sentence)
+    /// - `has_more`: whether there are more than 100 mistakes
     pub fn to_json(&self) -> String {
         let mistakes = self.diagnostics.iter().map(MistakeJson::of).collect();
-        // Plain numbers and texts always have a JSON form.
+        // Plain numbers and texts always serialize.
         serde_json::to_string(&ErrorJson { file: &self.file, unreadable: None, mistakes, has_more: self.has_more })
             .unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! `[defaults]`: checks the fields that many layers share, whether a layer uses them or not.
+//! `[defaults]`: checks the shared fields of layers, used or not.
 
 use toml::de::DeTable;
 
@@ -14,7 +14,7 @@ use super::tables::layer::{KIND, NAME};
 /// The table in messages.
 const TABLE: &str = "[defaults]";
 
-/// Refuses defaults that no kind of layer has, and returns the names that they were probably meant to have.
+/// Refuses defaults that no kind of layer has, and returns the valid names that they probably stand for.
 pub(super) fn check_names(defaults: &DeTable, log: &mut Log) -> Vec<String> {
     let mut meant = Vec::new();
     for name in defaults.keys() {
@@ -31,7 +31,7 @@ pub(super) fn check_names(defaults: &DeTable, log: &mut Log) -> Vec<String> {
     meant
 }
 
-/// Refuses the value of a default that no kind of layer takes. A layer that uses the default has the same mistake.
+/// Refuses default values that no kind of layer accepts. A layer that uses the default has the same mistake.
 pub(super) fn check_values(defaults: &DeTable, pixel_mm: Option<PixelSize>, log: &mut Log) {
     for (name, value) in defaults {
         let mut refused = None;

@@ -1,4 +1,4 @@
-//! What a compile says about a scene.
+//! Diagnostics of a compile.
 
 use std::fmt::{self, Display};
 
@@ -9,11 +9,11 @@ use super::optimisation::Optimisation;
 use super::printable::printable;
 use super::warning::Warning;
 
-/// What the compiler says about a place in a scene. Its text is the place and one sentence for the person who wrote the
-/// scene: what was found, what was expected, and what to do.
+/// A diagnostic of the compiler about a place in a scene. It displays as the place and one sentence for the scene's
+/// author: what was found, what was expected, and what to do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// What follows from it.
+    /// Its severity.
     pub kind: DiagnosticKind,
     /// The name of the file: the scene file, or one that it includes.
     pub file: String,
@@ -23,21 +23,21 @@ pub struct Diagnostic {
     pub column: usize,
     /// The text at that position; empty at the end of the file.
     pub text: String,
-    /// The number of the layer's table in the scene, from one at the bottom; `None` for what is said about no layer, or
-    /// about several.
+    /// The number of the layer's table in the scene, from one at the bottom; `None` if it concerns no layer, or
+    /// several.
     pub layer: Option<usize>,
     /// The sentence.
     pub message: Message,
 }
 
-/// What follows from a diagnostic.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiagnosticKind {
     /// The scene cannot be read.
     Mistake,
-    /// A board refuses the scene. A draft plays it in part, or clamped.
+    /// A board refuses the scene. A draft plays it clamped or in part.
     Refusal,
-    /// The scene plays, and there is a reason to doubt it.
+    /// The scene plays, with a reason for doubt.
     Warning,
     /// The scene plays, and the compiler has rounded, converted, clamped or omitted something.
     Note,
@@ -46,16 +46,16 @@ pub enum DiagnosticKind {
 /// The sentence of a diagnostic.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Message {
-    /// Of a mistake or a refusal.
+    /// The sentence of a mistake or a refusal.
     #[error(transparent)]
     Mistake(#[from] Mistake),
-    /// Of a warning.
+    /// The sentence of a warning.
     #[error(transparent)]
     Warning(#[from] Warning),
-    /// Of a note: part of the scene is not needed.
+    /// The sentence of a note about an optimisation.
     #[error(transparent)]
     Optimisation(#[from] Optimisation),
-    /// Of any other note.
+    /// The sentence of any other note.
     #[error("{0}")]
     Note(String),
 }
@@ -66,7 +66,7 @@ impl Diagnostic {
         printable(&self.message.to_string()).into_owned()
     }
 
-    /// The nearest valid name to an unknown one, if one is near enough.
+    /// The valid name most similar to an unknown one, if one is similar enough.
     pub fn nearest(&self) -> Option<&str> {
         match &self.message {
             Message::Mistake(mistake) => mistake.nearest(),
@@ -74,7 +74,7 @@ impl Diagnostic {
         }
     }
 
-    /// Whether both say the same about the same place. Layers share what they have from `[defaults]`.
+    /// Whether both have the same sentence and place. Layers share the mistakes of `[defaults]`.
     pub(super) fn repeats(&self, other: &Self) -> bool {
         let layer = other.layer;
         Self { layer, ..self.clone() } == *other

@@ -6,17 +6,17 @@ pub(super) fn digits(value: f64, to_whole: fn(f64) -> f64) -> f64 {
         return 0.0;
     }
     let digits = 3 - value.abs().log10().floor() as i32;
-    // A power of ten with a whole exponent of zero or more is exact, so the result prints with few digits.
+    // A power of ten with a non-negative integer exponent is exact, so the result prints with few digits.
     let scale = 10f64.powi(digits.abs());
     if digits >= 0 { to_whole(value * scale) / scale } else { to_whole(value / scale) * scale }
 }
 
-/// Rounds up to a whole number, but ignores what rounding to `f32` may have added to the fourth digit.
+/// Rounds up to a whole number, ignoring an excess from rounding to `f32`.
 pub(super) fn up(value: f64) -> f64 {
     (value - 0.002).ceil()
 }
 
-/// Rounds down to a whole number, but ignores what rounding to `f32` may have taken from the fourth digit.
+/// Rounds down to a whole number, ignoring a deficit from rounding to `f32`.
 pub(super) fn down(value: f64) -> f64 {
     (value + 0.002).floor()
 }

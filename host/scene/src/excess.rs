@@ -14,15 +14,14 @@ use super::reach::{ROUNDING, Reach};
 use super::titles::{LayerTitle, listed};
 use crate::reference::Reference;
 
-/// From this multiple of the reach on, another unit was probably meant.
+/// Multiple of the reach from which on another unit was probably meant.
 const UNIT_MISTAKE_FACTOR: f64 = 20.0;
 
-/// The limits of [drive] that have to be raised for an electric friction in newtons, and to which value; empty if that
-/// is not possible.
+/// Computes the fields of [drive] to raise for an electric friction in newtons, and their values; empty if that is not
+/// possible.
 pub(super) type Raise<'r> = &'r dyn Fn(f64) -> Vec<(&'static str, f64)>;
 
-/// Reports a mistake for layers that exceed the reach. With `saturate`, or if the excess is not certain, notes it
-/// instead.
+/// Reports layers that exceed the reach as a mistake; with `saturate`, or if the excess is not certain, as a note.
 ///
 /// `played` are the layers of the program's records.
 pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Program, log: &mut Log) {
@@ -69,7 +68,7 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
     log.set_layer(None);
 }
 
-/// The layers of `numbers` that add a ridge to what lies below, if there are several.
+/// The layers of `numbers` that add a ridge to the layers below, if there are several.
 fn added_ridges(program: &Program, numbers: &[usize]) -> Vec<usize> {
     let is_added_ridge = |record: &Record| match record.layer {
         RecordLayer::Edge(edge) => record.blend == Blend::Add && record.gain * edge.ridge_n > 0.0,
@@ -79,7 +78,7 @@ fn added_ridges(program: &Program, numbers: &[usize]) -> Vec<usize> {
     Some(ridges.collect()).filter(|ridges: &Vec<usize>| ridges.len() > 1).unwrap_or_default()
 }
 
-/// Whether the layers of `numbers` stay in reach once `ridges`, some of them, count by `blend = "max"`.
+/// Whether the layers of `numbers` stay in reach if `ridges`, a subset, have `blend = "max"`.
 fn ridges_in_reach_as_largest(
     header: &Header,
     reference: &Reference,
@@ -102,7 +101,7 @@ fn ridges_in_reach_as_largest(
 }
 
 impl Program {
-    /// The electric friction that can be reached, with a margin for rounding errors, N.
+    /// The reachable electric friction, N, with a margin for rounding errors.
     pub(super) fn within_reach(&self) -> Interval<f64> {
         let slack_n = ROUNDING * self.reach.electric_friction_max_n;
         Interval { low: -slack_n, high: self.reach.electric_friction_max_n + slack_n }
@@ -127,7 +126,7 @@ struct Demand<'a> {
     largest_of: Option<String>,
 }
 
-/// One side of the reach that layers exceed, and the place in the file to change.
+/// One side of the reach that layers exceed, and the place to change in the file.
 struct Side {
     offset: usize,
     mistake: FitMistake,
@@ -149,7 +148,7 @@ impl Demand<'_> {
         if asked.high > within.high {
             let clicked = self.clicked(log);
             let is_sum = clicked.is_some() || self.layers.len() > 1;
-            // A larger voltage raises what a fraction asks for as well.
+            // A larger voltage also raises the target of a fraction.
             let has_fraction = self.layers.iter().any(|played| has_fraction(played.layer));
             let has_newtons = self.layers.iter().any(|played| played.layer.places.has_unit("_n"));
             let (target_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
@@ -191,7 +190,7 @@ impl Demand<'_> {
         }
     }
 
-    /// Advice for friction below natural friction. Less load lowers natural friction.
+    /// Advice for friction below natural friction, which a lower load reduces.
     fn cure_below(&self, above: Above) -> &'static str {
         match &self.layers[..] {
             [_] if above == Above::Zero => "raise it, or lower `normal_load_n`",
@@ -201,8 +200,8 @@ impl Demand<'_> {
         }
     }
 
-    /// The fields of a single layer that exceed the reach together with its click, with their values; `None` if the
-    /// layer has no click, or is not alone.
+    /// The fields of a single layer that exceed the reach together with its click, with their values; `None` for
+    /// several layers, or for a layer without a click.
     fn clicked(&self, log: &Log) -> Option<String> {
         let [Played { layer, record }] = &self.layers[..] else { return None };
         let gain = f64::from(record.gain);
@@ -218,7 +217,7 @@ impl Demand<'_> {
         }
     }
 
-    /// The layers' names with the verb, and the place if there are several layers.
+    /// The layers' names with the verb, followed by the place if there are several layers.
     fn asking(&self, clicked: Option<String>) -> String {
         if let [Played { layer, .. }] = &self.layers[..] {
             let gain = layer.places.has("gain").then(|| format!("with its gain of {}", layer.gain));
@@ -241,7 +240,7 @@ impl Demand<'_> {
         )
     }
 
-    /// Offset of the field that sets the largest or least friction; with several layers, of the topmost layer.
+    /// Offset of the field that sets the largest or least friction; of several layers, the topmost one's.
     fn place(&self, most: bool) -> usize {
         match &self.layers[..] {
             [] => 0,
@@ -254,7 +253,7 @@ impl Demand<'_> {
     }
 }
 
-/// Whether an amount of a layer is a fraction of what can be reached.
+/// Whether an amount of a layer is a fraction of the reach.
 fn has_fraction(layer: &Layer) -> bool {
     let is_by_default = matches!(layer.kind, Kind::Bitmap(_)) && layer.blend != Blend::Multiply;
     layer.places.has_unit("_fraction") || (is_by_default && !layer.places.has("white_n"))

@@ -1,5 +1,5 @@
-//! Reads the fields of a TOML table, and reports missing and unknown ones. [`text`] parses files, [`values`] reads the
-//! fields' values, and [`misplaced`] finds what was written in the wrong place.
+//! Reads the fields of a TOML table, and reports missing and unknown ones. [`text`] parses files, [`values`] reads
+//! values, and [`misplaced`] finds fields in the wrong place.
 
 mod misplaced;
 mod text;
@@ -18,25 +18,25 @@ use super::nearest::Nearest;
 use super::source::Places;
 use misplaced::{Misplaced, Unknown};
 
-/// A table that is being read. Every field that the parser reads becomes known; [`Fields::close`] reports the others.
+/// A table that is being read. Each field that the parser reads becomes known; [`Fields::close`] reports the others.
 pub(super) struct Fields<'i> {
     table: String,
-    /// The field that the table stands in.
+    /// The field that contains the table.
     key: &'static str,
     values: DeTable<'i>,
-    /// Values of fields that the table does not have. Those that are not known are ignored.
+    /// Defaults for fields that are absent from the table. Unknown ones are ignored.
     defaults: DeTable<'i>,
     /// The size of a pixel of the scene's design, if it has one.
     pixel_mm: Option<PixelSize>,
-    /// Valid names that misspelt defaults were probably meant to be.
+    /// The valid names that misspelt defaults probably stand for.
     misspelt_defaults: Vec<String>,
     places: Places,
     known: Vec<KnownField>,
     required: Vec<&'static str>,
     either: Vec<[&'static str; 2]>,
-    /// The fields of the table follow from a word that was misspelt.
+    /// Whether the table's fields follow from a misspelt word.
     pub(super) is_guess: bool,
-    /// Fields of this table that are tables in `[defaults]`, too: each of them replaces its default as a whole.
+    /// Fields of this table that are also tables in `[defaults]`; each replaces its default entirely.
     replaced_defaults: Vec<String>,
     /// Whether this table replaces one of `[defaults]`.
     replaces_default: bool,
@@ -59,14 +59,14 @@ impl PixelSize {
     }
 }
 
-/// The fields of `lower` that `upper` does not have in any unit, and all of `upper`.
+/// Returns all fields of `upper`, and those of `lower` that `upper` does not have in any unit.
 pub(super) fn overlaid<'i>(lower: &DeTable<'i>, upper: DeTable<'i>) -> DeTable<'i> {
     let mut fields = without(lower, &upper);
     fields.extend(upper);
     fields
 }
 
-/// The fields of a table that another one does not have in any unit.
+/// Returns the fields of a table that `other` does not have in any unit.
 fn without<'i>(table: &DeTable<'i>, other: &DeTable) -> DeTable<'i> {
     let has = |name: &str| other.keys().any(|key| stem(key.get_ref()) == stem(name));
     let fields = table.iter().filter(|(name, _)| !has(name.get_ref()));
@@ -104,8 +104,8 @@ impl<'i> Fields<'i> {
         Self { pixel_mm, ..self }
     }
 
-    /// Sets the values of fields that the table does not have. A field of the table counts before a default in any
-    /// unit. `misspelt` are valid names that defaults of other names were probably meant to have.
+    /// Sets the values of absent fields. A field of the table takes precedence over a default in any unit. `misspelt`
+    /// are the valid names that misspelt defaults probably stand for.
     pub(super) fn with_defaults(self, defaults: &DeTable<'i>, misspelt: &[String]) -> Self {
         let replaced_defaults = defaults
             .keys()
@@ -119,7 +119,7 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// Moves a field here from another file's table. A field that both have is a mistake.
+    /// Moves a field here from another file's table; a field in both is a mistake.
     pub(super) fn adopt(&mut self, from: &mut Self, field: &FieldSpec, log: &mut Log) {
         let Some((key, value)) = from.values.remove_entry(field.name) else {
             from.known.push(KnownField { field: *field, words: Vec::new() });
@@ -137,7 +137,7 @@ impl<'i> Fields<'i> {
         }
     }
 
-    /// The fields, when nothing else of the table matters.
+    /// Returns the fields, and drops the rest of the table.
     pub(super) fn into_values(self) -> DeTable<'i> {
         self.values
     }
@@ -147,8 +147,8 @@ impl<'i> Fields<'i> {
         self.table = table;
     }
 
-    /// Reports unknown and missing fields, and returns the offsets of those that were read. A missing field is not
-    /// reported if a misspelling of it is, or if the fields of the table were guessed.
+    /// Reports unknown and missing fields, and returns the offsets of the fields that were read. A missing field is not
+    /// reported if its misspelling is, or if the table's fields were guessed.
     pub(super) fn close(self, log: &mut Log) -> Places {
         log.describe(|| self.described());
         let mut misspelt = self.misspelt_defaults.clone();
@@ -158,11 +158,11 @@ impl<'i> Fields<'i> {
                 continue;
             }
             let absent = self.known.iter().map(|known| known.field.name).filter(|known| !self.places.has(known));
-            // Pixels mean nothing in a scene without a design.
+            // Pixels have no meaning in a scene without a design.
             let in_mm =
                 |px: &str| self.known.iter().any(|other| other.field.name != px && stem(other.field.name) == stem(px));
             let absent = absent.filter(|known| self.pixel_mm.is_some() || !known.ends_with("_px") || !in_mm(known));
-            // One amount is given in one unit.
+            // An amount may be given in only one unit.
             let is_said = |known: &&str| {
                 self.known.iter().any(|other| {
                     let other = other.field.name;
@@ -187,7 +187,7 @@ impl<'i> Fields<'i> {
         self.places
     }
 
-    /// The field that says the same as another one in another unit, if a file can have it.
+    /// The field for the same quantity in another unit, if a file may contain it.
     fn other_unit(&self, field: &str) -> Option<&'static str> {
         let other = self.either.iter().find_map(|[one, other]| (*one == field).then_some(*other))?;
         (self.pixel_mm.is_some() || !other.ends_with("_px")).then_some(other)
@@ -235,14 +235,14 @@ impl<'i> Fields<'i> {
         value.map_or(self.places.table(), |value| value.span().start)
     }
 
-    /// Removes a field that no table has any more, and reports it if the file has it.
+    /// Removes an obsolete field, and reports it if the file has it.
     pub(super) fn refuse(&mut self, log: &mut Log, field: &str, mistake: FieldMistake) {
         if let Some((name, _)) = self.values.remove_entry(field) {
             log.add(name.span().start, mistake);
         }
     }
 
-    /// Reports a mistake if the file does not have a field.
+    /// Reports a mistake if the file lacks a field.
     pub(super) fn require(&mut self, field: &FieldSpec) {
         self.required.push(field.name);
     }

@@ -1,4 +1,4 @@
-//! The scene file as a person writes it, in the file's own units, each number within its range.
+//! The scene file as written, in the file's own units, each number within its range.
 
 use std::collections::btree_map::{BTreeMap, Entry};
 
@@ -25,18 +25,17 @@ use super::tables;
 /// Version of the file format.
 pub(super) const VERSION: u32 = 1;
 
-/// A scene file that was read: all fields are known, of the right type and in range. [`super::compile`] makes the other
-/// checks.
+/// A scene file that was read: all fields are known, have the right type and are in range. [`super::compile`] makes the
+/// other checks.
 ///
-/// A layer whose own fields have mistakes is absent, and [`Self::mistakes`] has them, so that the compiler can check
-/// the layers beside it, and report all mistakes at once.
+/// Layers with mistakes in their own fields are absent; [`Self::mistakes`] lists their mistakes. The compiler can thus
+/// check the remaining layers, and report all mistakes at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     pub(super) source: Source,
-    /// The mistakes of the layers that are absent.
+    /// The mistakes of the absent layers.
     pub(super) mistakes: Vec<Diagnostic>,
-    /// The pictures that layers name. Those of layers with mistakes are included, since a layer may be valid on another
-    /// screen.
+    /// The pictures that layers name, including layers with mistakes, since these may be valid on another screen.
     pub(super) pictures: PictureBytes,
     pub(super) profiles: Profiles,
     pub(super) drive: Drive,
@@ -72,7 +71,7 @@ pub(super) struct Touch {
     pub(super) leader: Leader,
 }
 
-/// Most bytes of all pictures of a scene.
+/// Largest total size of a scene's pictures, bytes.
 const PICTURES_MAX_BYTES: usize = 128 << 20;
 
 /// Ratio of a pixel's sides from which on a design counts as stretched.
@@ -93,7 +92,7 @@ impl Design {
         PixelSize { width_mm: screen.width_mm / self.width_px, height_mm: screen.height_mm / self.height_px }
     }
 
-    /// What to say of a design that has other proportions than the screen, and where.
+    /// The note about a design whose proportions differ from the screen's, and its offset.
     pub(super) fn note_on(self, screen: &Screen) -> Option<(usize, String)> {
         let Self { width_px, height_px, place } = self;
         let PixelSize { width_mm, height_mm } = self.pixel_on(screen);
@@ -115,8 +114,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The text is not TOML, or a part of it outside of the layers has mistakes. Mistakes of layers alone do not fail
-    /// here: [`super::compile`] reports them, with its own.
+    /// Fails if the text is not TOML, or if a part outside the layers has mistakes. Mistakes of layers are reported by
+    /// [`super::compile`], together with its own.
     pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
         let Gathered { source, mistakes } = include::gather(name, text, files);
         let mut log = Log::new(&source);
@@ -158,7 +157,7 @@ impl Scene {
         self.profiles.screen = screen;
         self.profiles.screen_source = ProfileSource::Option(name.to_owned());
         if let Some(design) = self.design {
-            // Pixels have another size on this screen.
+            // A pixel has another size on this screen.
             let mut log = Log::new(&self.source);
             let pixel_mm = design.pixel_on(&self.profiles.screen);
             if let Some(mut files) = files(&mut log) {
@@ -175,12 +174,12 @@ impl Scene {
         &self.mistakes
     }
 
-    /// The screen that the scene is compiled for.
+    /// The screen for which the scene is compiled.
     pub fn screen(&self) -> &Screen {
         &self.profiles.screen
     }
 
-    /// The finger that the scene is compiled for.
+    /// The finger for which the scene is compiled.
     pub fn finger(&self) -> &FingerProfile {
         &self.profiles.finger
     }
@@ -202,7 +201,7 @@ fn files<'s>(log: &mut Log<'s>) -> Option<Vec<Fields<'s>>> {
         let table = if file.start == 0 { "the scene" } else { &file.name };
         parsed(file, log).map(|values| Fields::new(table, file.start, values))
     });
-    // Parse every file, so that the mistakes of all are reported.
+    // Parse every file, to report the mistakes of all.
     fields.collect::<Vec<Option<Fields>>>().into_iter().collect()
 }
 
@@ -226,7 +225,7 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     for file in files {
         file.close(log);
     }
-    // Mistakes outside of the layers make it impossible to say what the layers ask for.
+    // Mistakes outside the layers make the target friction of the layers unknown.
     let head_is_valid = log.mistakes() == 0;
     let example = Screen::example();
     let screen = profiles.as_ref().map_or(&example, |profiles| &profiles.screen);
@@ -246,7 +245,7 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     })
 }
 
-/// The bytes of the pictures of these names. Those that would exceed [`PICTURES_MAX_BYTES`] are not kept.
+/// Reads the pictures of these names, except those that would exceed [`PICTURES_MAX_BYTES`].
 fn pictures(names: Vec<String>, files: &dyn Files) -> PictureBytes {
     let mut pictures = PictureBytes::new();
     let mut left = PICTURES_MAX_BYTES;
@@ -266,7 +265,7 @@ fn pictures(names: Vec<String>, files: &dyn Files) -> PictureBytes {
     pictures
 }
 
-/// Moves the tables of an included file into the scene, which may have each of them only once.
+/// Moves the tables of an included file into the scene, which may have each table only once.
 fn join<'i>(scene: &mut Fields<'i>, file: &mut Fields<'i>, log: &mut Log) {
     use tables::scene::{CARRIER, DESIGN, DRIVE, FINGER, SCREEN, TOUCH};
     let _ = file.texts(log, &tables::scene::INCLUDE);
@@ -282,8 +281,8 @@ fn design(mut fields: Fields, log: &mut Log) -> Option<Design> {
     Some(Design { width_px: width_px?, height_px: height_px?, place })
 }
 
-/// Reports the files of another version, and returns whether there are none. Their other fields mean nothing to this
-/// reader. The fields of a file without a version are read, so that its other mistakes are found, too.
+/// Reports the files of another version, whose other fields are ignored, and returns whether there are none. A file
+/// without a version is read, to report its other mistakes too.
 fn have_version(files: &mut [Fields], log: &mut Log) -> bool {
     let mut all = true;
     for fields in files {

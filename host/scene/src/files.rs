@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 /// Provides the bytes of the files that a scene names.
 ///
-/// [`Scene::parse`](crate::Scene::parse) reads each file once, so that compiling needs only the scene. Where the files
-/// are already in memory, a map from names to bytes implements this trait:
+/// [`Scene::parse`](crate::Scene::parse) reads each file once, so that compiling needs only the scene. If the files are
+/// already in memory, use a map from names to bytes:
 ///
 /// ```
 /// use std::collections::BTreeMap;
@@ -46,7 +46,7 @@ impl Files for BTreeMap<String, Vec<u8>> {
     }
 }
 
-/// The part of a file's name behind the last slash.
+/// The part of a file name after the last slash.
 pub(super) fn file_name(name: &str) -> &str {
     name.rsplit(['/', '\\']).next().unwrap_or(name)
 }

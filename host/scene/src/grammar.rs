@@ -1,6 +1,6 @@
 //! The grammar of a scene file: fields with their ranges and meanings, and the sets of fields that can occur together.
 
-/// A field of a table, as the parser checks it, editors show it, and `docs/scene.md` documents it.
+/// A field of a table, as used by the parser, by editors, and by `docs/scene.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldSpec {
     pub(crate) name: &'static str,
@@ -19,7 +19,7 @@ pub(crate) enum Holds {
     /// `true` or `false`.
     Flag,
     Text,
-    /// One of several words. The parser lists them.
+    /// One of several words, which the parser lists.
     Word,
     Table,
     /// A table, or the name of a file that contains it.
@@ -39,7 +39,7 @@ pub(crate) enum Holds {
     Pairs(Range),
 }
 
-/// The effect of omitting a field.
+/// Default of an absent field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Absence {
     /// Omitting the field is a mistake.
@@ -48,7 +48,7 @@ pub(crate) enum Absence {
     Number(f64),
     /// The field defaults to this value.
     Flag(bool),
-    /// The default in the words of the documentation; empty if there is nothing to state.
+    /// The default in words, for the documentation; empty if there is nothing to state.
     Means(&'static str),
 }
 
@@ -72,7 +72,7 @@ impl FieldSpec {
         Self { name, holds, absence, meaning }
     }
 
-    /// The default of the field, or not-a-number if it has no default number.
+    /// The default of the field; NaN if it is not a number.
     pub(crate) fn default_number(&self) -> f64 {
         if let Absence::Number(number) = self.absence { number } else { f64::NAN }
     }
@@ -87,7 +87,7 @@ pub(crate) struct AmountFields {
 }
 
 impl AmountFields {
-    /// Their names, so that the one in use can be found among a layer's fields.
+    /// The fields' names, to find the one that a layer uses.
     pub(crate) fn names(&self) -> [&'static str; 3] {
         [self.newtons.name, self.fraction.name, self.factor.name]
     }
@@ -109,13 +109,13 @@ pub(crate) enum Axis {
     Y,
 }
 
-/// The name of a field without the unit of an amount or a length: fields with the same stem say the same.
+/// The name of a field without its unit. Fields with the same stem mean the same quantity.
 pub(crate) fn stem(name: &str) -> &str {
     let units = ["_n", "_fraction", "_factor", "_mm", "_px"];
     units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name)
 }
 
-/// A field that the parser read, with the words that it may hold.
+/// A field that the parser read, with its allowed words.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KnownField {
     pub(crate) field: FieldSpec,
@@ -125,7 +125,7 @@ pub(crate) struct KnownField {
 /// All fields that the parser read in a table, with the rest of the table unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KnownTable {
-    /// The field that the table stands in.
+    /// The field that contains the table.
     pub(crate) key: &'static str,
     pub(crate) fields: Vec<KnownField>,
     pub(crate) required: Vec<&'static str>,

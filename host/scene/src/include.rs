@@ -9,7 +9,7 @@ use super::source::{Source, joined};
 use super::tables;
 use super::toml_text::toml;
 
-/// Largest number of files of a scene.
+/// Largest number of files in a scene.
 const FILES_MAX: usize = 64;
 
 /// The files of a scene, and the mistakes of their `include`s, each with its offset.
@@ -18,8 +18,7 @@ pub(super) struct Gathered {
     pub(super) mistakes: Vec<(usize, FileMistake)>,
 }
 
-/// Reads the files that a scene file includes, and the files that these include. A text that is not TOML
-/// includes nothing.
+/// Reads the files that a scene file includes, recursively. A text that is not TOML includes nothing.
 pub(super) fn gather(name: &str, text: &str, files: &dyn Files) -> Gathered {
     let mut gathered = Gathered { source: Source::new(name, text), mistakes: Vec::new() };
     gathered.follow(&mut vec![0], files);
@@ -27,7 +26,7 @@ pub(super) fn gather(name: &str, text: &str, files: &dyn Files) -> Gathered {
 }
 
 impl Gathered {
-    /// Reads the files that the last file of a chain includes. Each file of the chain includes the next one.
+    /// Reads the files included by the last file of a chain, in which each file includes the next one.
     fn follow(&mut self, chain: &mut Vec<usize>, files: &dyn Files) {
         let number = chain.last().copied().unwrap_or_default();
         let Some(file) = self.source.files().get(number).cloned() else { return };
@@ -50,7 +49,7 @@ impl Gathered {
         }
     }
 
-    /// Adds the file at `path` from the scene file's folder, which file `number` includes.
+    /// Adds the file at `path`, relative to the scene file's folder, which file `number` includes.
     fn read(&mut self, number: usize, path: &str, chain: &[usize], files: &dyn Files) -> Result<usize, FileMistake> {
         let all = self.source.files();
         let file = all.get(number).map_or_else(String::new, |file| file.name.clone());
@@ -88,12 +87,12 @@ impl Gathered {
     }
 }
 
-/// Those of some files that may be scenes.
+/// Filters file names that may be scenes.
 fn scenes(files: Vec<String>) -> Vec<String> {
     files.into_iter().filter(|file| file.rsplit_once('.').is_some_and(|(_, ending)| ending == "toml")).collect()
 }
 
-/// The names in `include` of a text, each with its offset.
+/// The names in a text's `include`, each with its offset.
 fn included_names(text: &str) -> Vec<(usize, String)> {
     let Ok(table) = toml(text) else { return Vec::new() };
     let names = table.get(tables::scene::INCLUDE.name).and_then(|value| value.get_ref().as_array());

@@ -1,4 +1,4 @@
-//! The record of each layer of the file, for a host that changes layers while they play.
+//! Maps each layer of a file to its record, for a host that changes layers during play.
 
 use thiserror::Error;
 
@@ -19,7 +19,7 @@ struct Entry {
     record: Option<u8>,
 }
 
-/// The reason why a layer of the file cannot be changed while it plays.
+/// The reason why a layer cannot be changed during play.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LayerError {
     /// No layer has this name or number.
@@ -27,7 +27,7 @@ pub enum LayerError {
     Unknown {
         /// The name or number that was given.
         found: String,
-        /// The nearest name, if one is near enough: that of a layer, of a copy, or of all copies.
+        /// The most similar name of a layer, a copy, or all copies, if one is similar enough.
         nearest: Option<String>,
         /// The first and the last number.
         numbers: Vec<String>,
@@ -68,13 +68,13 @@ impl LayerMap {
         Self(layers.into_iter().map(entry).collect())
     }
 
-    /// Numbers of the records, from zero, of the layer with the name `layer`, or with the number `layer` as messages have
-    /// it: `3`, or `3.2` for a copy. The name or the number of a layer with `repeat` is that of all its copies. If several
-    /// layers have the same name, the lowest one counts. `Device::set_layer` of the driver takes a record's number.
+    /// Indices of the records of a layer, given by its name or by its number in messages: `3`, or `3.2` for a copy. The
+    /// name or number of a layer with `repeat` means all its copies. If several layers share a name, the lowest one
+    /// counts. `Device::set_layer` of the driver takes such an index.
     ///
     /// # Errors
     ///
-    /// There is no such layer, or it cannot be changed while it plays.
+    /// Fails if there is no such layer, or if it cannot be changed during play.
     pub fn records(&self, layer: &str) -> Result<Vec<u8>, LayerError> {
         let all = |is_meant: &dyn Fn(&Entry) -> bool| -> Vec<&Entry> {
             self.0.iter().filter(|entry| is_meant(entry)).collect()
@@ -99,7 +99,7 @@ impl LayerMap {
 
     fn not_found(&self, layer: &str) -> LayerError {
         let known = self.0.iter().flat_map(|entry| [entry.family.as_deref(), entry.name.as_deref()]).flatten();
-        // A copy is meant by a name with a number.
+        // A name with a number means a copy.
         let family_of = |name: String| {
             let named = self.0.iter().find(|entry| entry.name.as_ref() == Some(&name));
             named.and_then(|entry| entry.family.clone()).filter(|_| !layer.contains(char::is_numeric)).unwrap_or(name)

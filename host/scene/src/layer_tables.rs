@@ -11,21 +11,21 @@ use super::source::SourceFile;
 use super::tables::{layer, scene};
 use super::toml_text::toml;
 
-/// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
+/// A layer table as written. With `repeat`, it defines several layers of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerTable {
     /// Number of the table in messages, from one.
     pub number: usize,
     /// The name in the file.
     pub name: Option<String>,
-    /// The word of its kind.
+    /// The value of `kind`.
     pub kind: &'static str,
     /// The gain in the file.
     pub gain: f64,
-    /// Whether it is on when the scene begins to play.
+    /// Whether it is on at the start of a play.
     pub starts_on: bool,
-    /// The numbers of its layers that [`LayerMap::records`](crate::LayerMap::records) takes: `3`, or `3.1`, `3.2` and so
-    /// on for copies.
+    /// Numbers of its layers, as accepted by [`LayerMap::records`](crate::LayerMap::records): `3`, or `3.1`, `3.2` and
+    /// so on for copies.
     pub layers: Vec<String>,
     /// The name of the file in messages.
     pub file: String,
@@ -53,7 +53,7 @@ impl Scene {
         with_bounds.collect()
     }
 
-    /// The table that a layer was written in, without its layers.
+    /// The table of a layer, without its layers.
     fn layer_table(&self, layer: &Layer, written: &[Written]) -> LayerTable {
         let start = layer.places.table();
         let text = written.iter().find(|table| table.places.start == start);
@@ -102,7 +102,7 @@ fn end(value: &Spanned<DeValue>) -> usize {
     own.max(inner.unwrap_or(own))
 }
 
-/// The smallest rectangle around some.
+/// The smallest rectangle around several.
 fn bounds(regions: &[Rectangle]) -> Option<[f64; 4]> {
     let corners = |region: &Rectangle| {
         [(region.x_mm, region.y_mm), (region.x_mm + region.width_mm, region.y_mm + region.height_mm)]

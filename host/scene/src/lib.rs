@@ -1,8 +1,7 @@
-//! Scenes: TOML files that a person writes, checked and compiled to the program that a board plays.
+//! Scenes: TOML files written by people, checked and compiled to the program that a board plays.
 //!
 //! `docs/scene.md` is the reference of the file format. [`Scene::parse`] reads a file. [`compile`] checks it against
-//! the board's limits and checks the layers against each other, and makes a [`Program`]. Both report all mistakes at
-//! once, each with line and column.
+//! the board's limits and returns a [`Program`]. Both report all mistakes at once, each with line and column.
 //!
 //! The input is the text of a scene file, the bytes of the files that it names ([`Files`]), and the limits of a board.
 //! The output is the bytes that a board plays, with information for the scene's designer.
@@ -26,7 +25,7 @@
 //! The crate opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`TargetRange`]: the target friction of a program over its screen.
-//! - [`Scenario`]: what happens to a board while a scene plays, and what has to be seen of it.
+//! - [`Scenario`]: events during the play of a scene, and the expected outcome.
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Whether the drive can give what layers ask for once they are changed while they play.
+//! Checks whether the drive can render changed layers during play.
 
 use frixel_layers::{Interval, range};
 use thiserror::Error;
@@ -9,22 +9,22 @@ use super::program::Program;
 use super::reference::{Piece, Reference};
 use super::titles::{LayerTitle, listed};
 
-/// Most places that are searched for an excess. A refused gain takes some forty searches, during which the host does not
-/// serve the board.
+/// Largest number of places searched for an excess. Refusing a gain takes about forty searches, during which the host
+/// does not serve the board.
 const PLACES_MAX: usize = 4_000;
-/// Steps of the search for a gain that can be reached.
+/// Steps of the search for a reachable gain.
 const STEPS: u32 = 10;
 
-/// The settings of a layer while it plays.
+/// Settings of a layer during play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerSetting {
     /// Whether it is on.
     pub on: bool,
-    /// The factor on its friction, in place of its record's.
+    /// Gain of the layer, in place of its record's.
     pub gain: f32,
 }
 
-/// Layers ask for friction that the drive cannot give, so that it is clamped.
+/// Layers ask for friction out of reach, which is clamped.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "{} would ask for {} N above natural friction, and 0 to {reach_n} N can be reached", listed(&.layers.iter().collect::<Vec<_>>()),
@@ -33,9 +33,9 @@ pub struct LayerSetting {
 pub struct Clamped {
     /// The layers, from bottom to top.
     pub layers: Vec<LayerTitle>,
-    /// The friction that they ask for, N above natural friction.
+    /// The friction they ask for, N above natural friction.
     pub target_n: f64,
-    /// The most that can be reached, rounded down, N above natural friction.
+    /// The largest reachable friction, rounded down, N above natural friction.
     pub reach_n: f64,
 }
 
@@ -44,8 +44,8 @@ fn side(target_n: f64, reach_n: f64) -> String {
 }
 
 impl Program {
-    /// The layers whose friction the board clamps when they play with these settings, one for each record; `None` if the
-    /// drive can give all friction that the search finds. A stream counts with every value that it may have.
+    /// Returns the layers whose friction the board clamps with these settings, one per record; `None` if the search
+    /// finds no excess. A stream counts with all its possible values.
     pub fn clamped_with(&self, settings: &[LayerSetting]) -> Option<Clamped> {
         let within = self.within_reach();
         let excess = self.worst_with(&pieces(&Reference::new(self), settings))?;
@@ -59,9 +59,9 @@ impl Program {
         })
     }
 
-    /// The least and the largest gain of some records together with which the board clamps nothing, while all other
-    /// settings stay as they are; `None` if it clamps with every gain. The search starts from the gain of the first of
-    /// them in `settings`.
+    /// Returns the smallest and the largest common gain of some records for which the board clamps nothing, with all
+    /// other settings unchanged; `None` if it clamps with every gain. The search starts from the first record's gain in
+    /// `settings`.
     pub fn gains_in_reach(&self, records: &[u8], settings: &[LayerSetting]) -> Option<(f32, f32)> {
         let mut pieces = pieces(&Reference::new(self), settings);
         let mut is_in_reach = |gain: f64| {
@@ -79,7 +79,7 @@ impl Program {
                 return limit;
             }
             let (mut inside, mut outside) = (start, limit);
-            // First near the start, then by halves.
+            // First near the start, then by bisection.
             for step in [0.1, 0.3, 1.0, 3.0, 10.0, 30.0] {
                 let gain = start + step * (limit - start).signum();
                 if !(start.min(limit)..=start.max(limit)).contains(&gain) {
@@ -96,7 +96,7 @@ impl Program {
                 let middle = f64::midpoint(inside, outside);
                 if is_in_reach(middle) { inside = middle } else { outside = middle }
             }
-            // To hundredths; where rounding leads outside, towards the inside. Adding zero makes no gain a negative zero.
+            // Round to hundredths, towards the inside where necessary. Adding zero avoids a negative zero.
             let rounded = (100.0 * inside).round() / 100.0;
             let towards_start = if limit > start { (100.0 * inside).floor() } else { (100.0 * inside).ceil() };
             0.0 + if is_in_reach(rounded) { rounded } else { towards_start / 100.0 }

@@ -1,4 +1,4 @@
-//! Collects what a compile says while a scene is read and compiled.
+//! Collects the diagnostics of reading and compiling a scene.
 
 use super::compile_error::{CompileError, MISTAKES_MAX};
 use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
@@ -9,20 +9,20 @@ use super::optimisation::Optimisation;
 use super::source::Source;
 use super::warning::Warning;
 
-/// Collects diagnostics, so that a person sees all mistakes at once.
+/// Collects diagnostics, so that all mistakes are reported at once.
 pub(super) struct Log<'s> {
     source: &'s Source,
     /// `Mistake` while a scene is read, `Refusal` while it is compiled.
     kind: DiagnosticKind,
     /// The layer that is read or compiled.
     layer: Option<usize>,
-    /// Mistakes and refusals, each one once. One more than are reported stands for all others.
+    /// Mistakes and refusals without repetitions. One more than are reported stands for all others.
     mistakes: Vec<Diagnostic>,
-    /// Warnings and notes, in the order in which they were added.
+    /// Warnings and notes, in the order they were added.
     remarks: Vec<Diagnostic>,
-    /// How many mistakes were added, those that were there already included.
+    /// Number of added mistakes, including repetitions.
     added: usize,
-    /// The known fields of each table, in the order in which tables were closed; `None` except while a schema is made.
+    /// The known fields of each table, in the order of closing; `None` except for making a schema.
     described: Option<Vec<KnownTable>>,
 }
 
@@ -32,17 +32,17 @@ impl<'s> Log<'s> {
         Self { source, kind: DiagnosticKind::Mistake, layer, mistakes, remarks, added, described }
     }
 
-    /// A log that starts with the mistakes that were found while the scene was read.
+    /// A log that starts with the mistakes found while reading the scene.
     pub(super) fn resuming(source: &'s Source, mistakes: &[Diagnostic]) -> Self {
         Self { mistakes: mistakes.to_vec(), added: mistakes.len(), ..Self::new(source) }
     }
 
-    /// The same log while the scene is compiled: what is added is a refusal.
+    /// The same log for compiling the scene: mistakes become refusals.
     pub(super) fn of_refusals(self) -> Self {
         Self { kind: DiagnosticKind::Refusal, ..self }
     }
 
-    /// A log of the same file whose mistakes do not count.
+    /// A log of the same files whose mistakes do not count.
     pub(super) fn scratch(&self) -> Self {
         Self { kind: self.kind, layer: self.layer, ..Self::new(self.source) }
     }
@@ -59,7 +59,7 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// Whether this log keeps the known fields of tables, so that its mistakes do not matter.
+    /// Whether this log keeps the known fields of tables, so that mistakes do not matter.
     pub(super) fn is_describing(&self) -> bool {
         self.described.is_some()
     }
@@ -74,13 +74,13 @@ impl<'s> Log<'s> {
         self.source
     }
 
-    /// Sets the layer that is read or compiled, by the number of its table: what is added is about it.
+    /// Sets the current layer, by the number of its table. Further diagnostics refer to it.
     pub(super) fn set_layer(&mut self, layer: Option<usize>) {
         self.layer = layer;
     }
 
-    /// Adds a mistake at a byte offset of the files. A mistake that is there already is reported once, but counted
-    /// again: layers that share a field share its mistakes.
+    /// Adds a mistake at a byte offset of the files. A repetition is counted, but not reported: layers that share a
+    /// field share its mistakes.
     pub(super) fn add(&mut self, offset: usize, mistake: impl Into<Mistake>) {
         if self.mistakes.len() > MISTAKES_MAX {
             self.added += 1;
@@ -105,7 +105,7 @@ impl<'s> Log<'s> {
         self.remark(DiagnosticKind::Note, offset, self.layer, Message::Note(sentence));
     }
 
-    /// Notes that part of a layer, or all of it, is not needed.
+    /// Notes that a layer, or a part of it, is not needed.
     pub(super) fn note_optimisation(&mut self, layer: &Layer, optimisation: Optimisation) {
         self.remark(DiagnosticKind::Note, layer.places.table(), Some(layer.number().table), optimisation);
     }
@@ -135,7 +135,7 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// The value if there are no mistakes, otherwise the mistakes.
+    /// Returns the value if there are no mistakes, otherwise the mistakes.
     pub(super) fn finish<T>(self, value: Option<T>) -> Result<T, CompileError> {
         match value {
             Some(value) if self.mistakes.is_empty() => Ok(value),
@@ -146,7 +146,7 @@ impl<'s> Log<'s> {
         }
     }
 
-    /// Mistakes and refusals, in the order of the scene file, then of those that it includes. There may be one more
+    /// Mistakes and refusals in the order of the scene file, followed by those of included files. There may be one more
     /// than are reported.
     pub(super) fn into_mistakes(self) -> Vec<Diagnostic> {
         let files = self.source.files();
@@ -156,7 +156,7 @@ impl<'s> Log<'s> {
         mistakes
     }
 
-    /// All that was said: first mistakes and refusals, in the order of the files, then warnings and notes.
+    /// All diagnostics: mistakes and refusals in the order of the files, then warnings and notes.
     pub(super) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
         let remarks = std::mem::take(&mut self.remarks);
         let mut diagnostics = self.into_mistakes();
@@ -164,7 +164,7 @@ impl<'s> Log<'s> {
         diagnostics
     }
 
-    /// Number of mistakes so far. A mistake that several layers share counts for each of them.
+    /// Number of mistakes so far. A shared mistake counts once for each layer.
     pub(super) fn mistakes(&self) -> usize {
         self.added
     }

@@ -1,20 +1,20 @@
-//! Finds the known word that is nearest to an unknown one.
+//! Finds the known word most similar to an unknown one.
 
 use std::fmt::{self, Display};
 
-/// The known words that an unknown word may stand for.
+/// The known words, and the most similar one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
-    /// The nearest word, if one is near enough.
+    /// The most similar word, if one is similar enough.
     pub suggestion: Option<String>,
     /// All known words.
     pub known: Vec<String>,
-    /// What belongs to the suggestion, with a comma before it; without one, what to use instead. Empty if there is nothing.
+    /// Text after the suggestion, with a leading comma; without a suggestion, the replacement to use. May be empty.
     remark: &'static str,
 }
 
-/// Words of other trades for words of a scene, each with a remark. Of those with one word, the first one whose meaning
-/// is known where it is written counts.
+/// Common words for terms of a scene, each with a remark. If a word occurs several times, the first entry whose term is
+/// valid in the context counts.
 const SYNONYMS: [(&str, &str, &str); 22] = [
     ("file", "picture", ""),
     ("image", "picture", ""),
@@ -40,22 +40,21 @@ const SYNONYMS: [(&str, &str, &str); 22] = [
     ("icon", "bitmap", ", with a picture of the icon"),
 ];
 
-/// Words for what no kind of layer is, each with what to use instead. They count where [`A_KIND`] is known.
+/// Words for unsupported kinds of layer, each with a replacement. They apply where [`A_KIND`] is valid.
 const NO_KINDS: [(&str, &str); 1] = [(
     "animation",
     "no kind plays pictures one after another: use `vibration`, `drift_mm_per_s` of a `grating`, or layers with \
      `live = true`, which a program switches by `--control`",
 )];
 
-/// A kind of layer: where it is known, the known words are kinds.
+/// A kind of layer: if it is valid, kinds are expected.
 const A_KIND: &str = "vibration";
 
 impl Nearest {
-    /// Likeness (Jaro-Winkler, 0 to 1) from which a word is suggested.
+    /// Similarity (Jaro-Winkler, 0 to 1) from which on a word is suggested.
     const LIKENESS_MIN: f64 = 0.75;
 
-    /// Finds the nearest of some known words, upper and lower case alike. Of words that are equally near, the first one
-    /// counts.
+    /// Finds the most similar of some known words, ignoring case. Of equally similar words, the first counts.
     pub fn new<'k>(found: &str, known: impl IntoIterator<Item = &'k str>) -> Self {
         let known: Vec<String> = known.into_iter().map(str::to_owned).collect();
         let found = found.to_lowercase();
@@ -77,8 +76,7 @@ impl Nearest {
         Self { suggestion, known, remark: "" }
     }
 
-    /// The file that is nearest to the name of another one. Files are alike by what stands before the ending, which is
-    /// the same for many.
+    /// The file name most similar to another one, compared without extensions, which many files share.
     pub(super) fn file(found: &str, files: &[String]) -> Option<String> {
         let stem = Self::new(stem(found), files.iter().map(|file| self::stem(file))).suggestion?;
         let is_alike = |file: &&String| self::stem(file) == stem;
@@ -88,7 +86,7 @@ impl Nearest {
     }
 }
 
-/// What stands before the ending of a file's name.
+/// The part of a file name before the extension.
 fn stem(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

@@ -1,8 +1,8 @@
-//! The optimisations that the compiler has made, with the reason for each.
+//! Optimisations made by the compiler, with the reason for each.
 
 use thiserror::Error;
 
-/// Part of a scene file that its program does not need. Its text is a sentence for a person.
+/// A part of the scene file that its program does not need. It displays as a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Optimisation {
@@ -20,8 +20,8 @@ pub enum Optimisation {
         /// The layer.
         layer: String,
     },
-    /// A layer whose target friction is the same everywhere and always.
-    #[error("{layer} is played as a constant: it wants the same friction everywhere")]
+    /// A layer whose target friction is the same everywhere and at all times.
+    #[error("{layer} is played as a constant: its friction is the same everywhere")]
     Flat {
         /// The layer.
         layer: String,

@@ -1,5 +1,5 @@
-//! Makes a program smaller without changing the felt friction: covered layers are dropped, layers of one friction
-//! become constants, constants over constants are merged, and points and pictures that no layer names are dropped.
+//! Makes a program smaller without changing the felt friction: drops covered layers, replaces uniform layers by
+//! constants, merges constants, and drops unused points and pictures.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -18,7 +18,7 @@ struct Played<'l> {
     record: Record,
 }
 
-/// Makes a program smaller. `layers` are those of its records; what the host may change while they play stays.
+/// Makes a program smaller. `layers` are those of its records. Layers that the host may change during play stay.
 pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut Log) {
     let records = std::mem::take(&mut program.records);
     let bitmaps: Vec<(u32, &SceneLayer)> = layers
@@ -40,7 +40,7 @@ pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut 
     drop_bitmaps(program, &bitmaps, log);
 }
 
-/// Replaces layers whose target friction is the same everywhere and always by constants.
+/// Replaces layers whose target friction is the same everywhere and at all times by constants.
 fn flatten(items: &mut [Played], points: &[Point], log: &mut Log) {
     for item in items.iter_mut().filter(|item| !item.layer.live) {
         let layer = &item.record.layer;
@@ -55,7 +55,7 @@ fn flatten(items: &mut [Played], points: &[Point], log: &mut Log) {
     }
 }
 
-/// Drops layers that a layer above replaces wherever they apply.
+/// Drops layers that a layer above replaces entirely.
 fn drop_covered(items: &mut Vec<Played>, header: &Header, log: &mut Log) {
     let mut number = 0;
     while let Some(item) = items.get(number) {
@@ -120,7 +120,7 @@ fn drop_idle(items: &mut Vec<Played>, log: &mut Log) {
     });
 }
 
-/// Merges a constant into the constant directly below it, if both have the same region. The result is bit-identical to
+/// Merges a constant into the constant directly below it if both have the same region. The result is bit-identical to
 /// the board's.
 fn fold(items: &mut Vec<Played>, log: &mut Log) {
     let mut number = 0;
@@ -152,7 +152,7 @@ fn fold(items: &mut Vec<Played>, log: &mut Log) {
     }
 }
 
-/// Keeps the points that records name, and renumbers them.
+/// Keeps the points that records refer to, and renumbers them.
 fn compact_points(program: &mut Program) {
     let all = std::mem::take(&mut program.points);
     let mut kept: Vec<Point> = Vec::new();
@@ -162,7 +162,7 @@ fn compact_points(program: &mut Program) {
         if place == kept.len() {
             kept.extend(own);
         }
-        // The number fits, since there are no more points than before.
+        // The index fits, since the number of points does not grow.
         *first = place as u8;
     };
     for record in &mut program.records {
@@ -176,7 +176,7 @@ fn compact_points(program: &mut Program) {
     program.points = kept;
 }
 
-/// Drops bitmaps that no record names. `bitmaps` has those of all layers.
+/// Drops bitmaps that no record refers to. `bitmaps` has those of all layers.
 fn drop_bitmaps(program: &mut Program, bitmaps: &[(u32, &SceneLayer)], log: &mut Log) {
     let named: BTreeSet<u32> = program.records.iter().filter_map(|record| record.layer.bitmap_crc32()).collect();
     program.bitmaps.retain(|bitmap| {

@@ -1,20 +1,20 @@
-//! The finger that a program is compiled for, and what its numbers rest on.
+//! The finger of a program, and the evidence for its parameters.
 
 use super::finger::{Evidence, Origin};
 use super::printable::printable;
 use super::profiles::{ProfileSource, Profiles};
 
-/// The finger that a program is compiled for.
+/// The finger for which a program is compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlayedFinger {
     /// The finger in messages: for example `the example finger`.
     pub title: String,
-    /// What its newtons rest on, on the screen of the program.
+    /// Evidence for its newtons on the program's screen.
     pub origin: Origin,
 }
 
 impl PlayedFinger {
-    /// The finger of a scene. A profile of another screen counts as assumed; the note says so.
+    /// The finger of a scene. A profile measured on another screen counts as assumed, and the note says so.
     pub(super) fn of(profiles: &Profiles) -> (Self, Option<String>) {
         let title = match &profiles.finger_source {
             ProfileSource::Option(name) | ProfileSource::Named(name) => format!("finger \"{name}\""),

@@ -19,16 +19,16 @@ use super::resample::{Axis, resample};
 /// The bytes of each picture that a scene names, or the reason why they are not available.
 pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, FileUnavailable>>;
 
-/// Collects the bitmaps of a scene, each one once, and checks that they fit into the pool.
+/// Collects the bitmaps of a scene without duplicates, and checks that they fit into the pool.
 pub(super) struct Pool {
     pictures: Decoded,
     size_bytes: u32,
-    /// The pitch of pictures with `pitch_mm = "auto"` that have finer pixels.
+    /// The pitch of finer pictures with `pitch_mm = "auto"`.
     shared_pitch_mm: f64,
     bitmaps: Vec<Bitmap>,
 }
 
-/// The pictures of a scene, each decoded once, or the reason why one cannot be used.
+/// The pictures of a scene, each decoded once, or the reason why a picture cannot be used.
 pub(super) type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
 
 /// The reason why a picture has no place in the pool.
@@ -39,7 +39,7 @@ pub(super) enum Unplaced {
     Unusable(FileMistake),
     /// The pool has too little room for it.
     PoolTooSmall {
-        /// Bytes that the pictures so far need, this one included.
+        /// Bytes needed by the pictures so far, including this one.
         needed_bytes: u64,
         pool_bytes: u32,
         /// A pitch at which they fit.
@@ -57,13 +57,13 @@ pub(crate) struct Placed {
     pub(crate) pitches_mm: (f64, f64),
     pub(crate) angle_turns: f32,
     pub(crate) tiled: bool,
-    /// The picture's outline; `None` for a tiled picture, which is not bounded.
+    /// The picture's outline; `None` for a tiled picture.
     pub(crate) outline: Option<Region>,
-    /// Whether it is of one grey, and transparent, so that another ground would show its shape.
+    /// Whether it is transparent and of one grey, so that another ground would reveal its shape.
     pub(crate) is_hidden: bool,
     /// Its height over its width, relative to that of its pixels.
     pub(crate) height_factor: f64,
-    /// The height that its width demands.
+    /// The height that preserves the proportions.
     pub(crate) height_kept_mm: f64,
 }
 
@@ -76,7 +76,7 @@ impl Placed {
         (across, down): (Axis, Axis),
         (crc32, is_hidden): (u32, bool),
     ) -> Self {
-        // A picture is turned about its centre.
+        // A picture is rotated about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
         let (cos, sin) = direction(bitmap.angle_deg);
@@ -117,7 +117,7 @@ fn direction(angle_deg: f64) -> (f64, f64) {
     (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
 }
 
-/// The picture's rectangle before it is turned. Place and size default to those of the layer's region.
+/// The picture's rectangle before rotation. Place and size default to those of the layer's region.
 fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: f64) -> Option<Rectangle> {
     let width_mm = bitmap.width_mm.or(region.map(|region| region.width_mm))?;
     let height_mm = bitmap.height_mm.or(match (bitmap.width_mm, region) {
@@ -132,8 +132,8 @@ fn rectangle(bitmap: &BitmapLayer, region: Option<Rectangle>, height_per_width: 
     })
 }
 
-/// The samples along a row and down the rows: all samples of a picture that is turned or tiled, otherwise those inside
-/// its region and the screen.
+/// The samples along a row and down the rows. For a rotated or tiled picture, all samples; otherwise those within its
+/// region and the screen.
 fn axes(
     bitmap: &BitmapLayer,
     pitch_mm: f64,
@@ -162,7 +162,7 @@ fn axes(
     )
 }
 
-/// The pitch of a picture: its own, or the finest one that its pixels, the range and the shared pitch allow.
+/// The pitch of a picture: its own, or the finest allowed by its pixels, the range and the shared pitch.
 fn pitch_mm(bitmap: &BitmapLayer, picture: &Picture, whole: Rectangle, shared_mm: f64) -> f64 {
     bitmap.pitch_mm.unwrap_or_else(|| {
         let pixel_mm = (whole.width_mm / picture.width as f64).min(whole.height_mm / picture.height as f64);
@@ -174,8 +174,8 @@ fn height_per_width(picture: &Picture) -> f64 {
     picture.height as f64 / picture.width as f64
 }
 
-/// The finest pitch in hundredths of a millimetre at which the bitmaps of a scene fit into the pool, if the layers with
-/// `pitch_mm = "auto"` have it; the coarsest one if none fits.
+/// The finest pitch, in hundredths of a millimetre, at which a scene's bitmaps fit into the pool if all layers with
+/// `pitch_mm = "auto"` use it; the coarsest one if none fits.
 fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
     let screen_mm = (scene.screen().width_mm, scene.screen().height_mm);
     let bitmaps = scene.layers.iter().filter_map(|layer| {
@@ -215,8 +215,8 @@ fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
     f64::from(high) / 100.0
 }
 
-/// The opaque picture at the levels of its layer, which are those of its samples, so that a picture of more pixels is felt as
-/// one of few.
+/// The opaque picture at the levels of its layer. Levels are those of the samples, so that the result does not depend
+/// on the number of pixels.
 fn levelled<'p>(bitmap: &BitmapLayer, picture: &'p Picture, across: Axis, down: Axis) -> Cow<'p, Picture> {
     let is_changed = bitmap.is_inverted || !picture.white_below.is_empty();
     let picture = if is_changed {
@@ -232,13 +232,13 @@ fn levelled<'p>(bitmap: &BitmapLayer, picture: &'p Picture, across: Axis, down: 
     Cow::Owned(picture.into_owned().stretched(samples))
 }
 
-/// Decodes the pictures of a scene, each one once, of at most so many pixels together.
+/// Decodes each picture of a scene once, up to a total number of pixels.
 pub(super) fn decoded(scene: &Scene, pixels_max: usize) -> Decoded {
     let mut decoded = Decoded::new();
     let mut pixels_left = pixels_max;
     for layer in &scene.layers {
         if let Kind::Bitmap(bitmap) = &layer.kind {
-            // `Scene::parse` has read every picture that a layer names.
+            // `Scene::parse` has read every picture named by a layer.
             let unread = Err(FileUnavailable::Unreadable { reason: "the scene was read without it".to_owned() });
             let bytes = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
             decoded.entry(bitmap.picture.clone()).or_insert_with(|| {
@@ -269,7 +269,7 @@ fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>, pixels_max: usi
 }
 
 impl Pool {
-    /// Decodes the pictures of a scene, for a pool of this size.
+    /// Decodes the pictures of a scene, for a pool of `size_bytes`.
     pub(super) fn new(scene: &Scene, size_bytes: u32) -> Self {
         let pictures = decoded(scene, PIXELS_MAX);
         let shared_pitch_mm = shared_pitch_mm(scene, &pictures, size_bytes);
@@ -295,7 +295,7 @@ impl Pool {
         let whole = rectangle(bitmap, region, height_per_width(picture)).ok_or(Unplaced::Reported)?;
         let pitch_mm = pitch_mm(bitmap, picture, whole, self.shared_pitch_mm);
         let (across, down) = axes(bitmap, pitch_mm, picture, whole, region, screen_mm);
-        // Check before resampling, so that a pitch that is far too fine allocates no memory.
+        // Check before resampling, so that a far too fine pitch allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
         self.check_room(pitch_mm, bytes)?;
         // One side may still exceed the protocol's 16 bits.
@@ -337,8 +337,7 @@ impl Pool {
         Unplaced::PoolTooSmall { needed_bytes, pool_bytes: self.size_bytes, pitch_mm }
     }
 
-    /// Describes the conversions of a picture, and a pitch that the scene leaves open; `None` if there is nothing to
-    /// say.
+    /// Describes the conversions of a picture, and an automatic pitch; `None` if there are none.
     fn note(&self, bitmap: &BitmapLayer, picture: &Picture, pitch_mm: f64, across: Axis, down: Axis) -> Option<String> {
         let mut done = picture.conversions.clone();
         let is_resampled = (across.whole, down.whole) != (picture.width, picture.height);

@@ -1,4 +1,4 @@
-//! Text that others wrote, from a scene, a file's name or a board, as it may be printed.
+//! Prints text from scenes, file names and boards safely.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
@@ -6,21 +6,20 @@ use std::fmt::{self, Display, Write};
 /// Most characters of a name in a scene: of a layer, a screen or a finger.
 pub const NAME_MAX_CHARS: usize = 64;
 
-/// Whether a character does something to a terminal or to the order of a line instead of being seen: control
-/// characters, the ends of lines and paragraphs, marks of direction, and the byte order mark. XML has no form for most
-/// of them.
+/// Whether a character controls a terminal or the order of a line instead of being visible: control characters, line
+/// and paragraph separators, direction marks, and the byte order mark. XML cannot represent most of them.
 fn is_unprintable(character: char) -> bool {
     character.is_control()
         || matches!(character, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
         || matches!(character, '\u{61c}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')
 }
 
-/// Whether a text can be printed as it is.
+/// Whether a text can be printed unchanged.
 pub fn is_printable(text: &str) -> bool {
     !text.contains(is_unprintable)
 }
 
-/// A text on one line as it may be printed: what is not seen stands as `\u001b`, as in JSON.
+/// A text on one line in printable form: invisible characters are escaped as `\u001b`, as in JSON.
 ///
 /// ```
 /// assert_eq!(frixel_scene::printable("wood"), "wood");
@@ -30,7 +29,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     if is_printable(text) { text.into() } else { escaped(text, |_| false).into() }
 }
 
-/// Like [`printable`], for a text of several lines that a program has put together.
+/// Like [`printable`], but keeps the line breaks of a text that a program has composed.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     let is_kept = |character| character == '\n';
     if text.chars().any(|character| is_unprintable(character) && !is_kept(character)) {
@@ -53,7 +52,7 @@ fn escaped(text: &str, is_kept: impl Fn(char) -> bool) -> String {
     escaped
 }
 
-/// A text of a file in a sentence: as it was written, but cut after as many characters as a name may have.
+/// A text for use in a sentence, cut at the largest length of a name.
 pub fn brief(name: &str) -> Cow<'_, str> {
     match name.char_indices().nth(NAME_MAX_CHARS) {
         Some((end, _)) => format!("{}\u{2026}", name.get(..end).unwrap_or_default()).into(),
@@ -61,7 +60,7 @@ pub fn brief(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// A number in a sentence: with an exponent where it would have many digits.
+/// A number for use in a sentence, with an exponent if it has many digits.
 pub struct Shown(pub f64);
 
 impl Display for Shown {

@@ -10,7 +10,7 @@ use super::nearest::Nearest;
 use super::screen::{self, Screen};
 use super::tables;
 
-/// Where a scene got its screen or its finger. The first of these that is given counts.
+/// Origin of a scene's screen or finger, in order of precedence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProfileSource {
     /// Given beside the scene, from this file or under this bundled name.
@@ -19,7 +19,7 @@ pub enum ProfileSource {
     Named(String),
     /// A table of the scene file.
     Embedded,
-    /// The scene does not say.
+    /// The scene names none: the example is used.
     Example,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Profiles {
     pub(super) screen_source: ProfileSource,
     pub(super) finger: FingerProfile,
     pub(super) finger_source: ProfileSource,
-    /// Offset in the scene file for mistakes of the two together.
+    /// Offset in the scene file for mistakes that concern both.
     pub(super) place: usize,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn read(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Opt
     Some(Profiles { screen, screen_source, finger, finger_source, place })
 }
 
-/// How one of the two is read.
+/// How to read one of the two.
 struct Profile<T> {
     field: &'static FieldSpec,
     read: fn(Fields, &mut Log) -> Option<T>,
@@ -74,7 +74,7 @@ struct Profile<T> {
 impl<T> Profile<T> {
     fn read(&self, fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<(T, ProfileSource)> {
         if !fields.has(self.field.name) {
-            // The field is known although it is absent.
+            // The field is known even if it is absent.
             let _ = fields.table_or_text(log, self.field);
             return Some(((self.example)(), ProfileSource::Example));
         }
@@ -117,12 +117,12 @@ impl<T> Profile<T> {
     }
 }
 
-/// The path from the scene file's folder of the file that is named at an offset, or the name of a bundled profile.
+/// The path of a file named at an offset, relative to the scene file's folder, or the name of a bundled profile.
 fn path_of(name: &str, offset: usize, log: &Log) -> String {
     if is_file_name(name) { log.source().path_at(offset, name) } else { name.to_owned() }
 }
 
-/// Whether a name is that of a file. Bundled names are plain words.
+/// Whether a name is a file name. Bundled names are plain words.
 pub(super) fn is_file_name(name: &str) -> bool {
     name.contains(['.', '/', '\\'])
 }

@@ -17,14 +17,13 @@ use super::warning::Warning;
 /// A compiled scene, with its pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// The parameters of the whole scene. Its voltages are within the board's limits: [`Reach::voltage_max_v_rms`].
+    /// Parameters of the whole scene. Its voltages are within the board's limits: [`Reach::voltage_max_v_rms`].
     pub header: Header,
     /// The layers from bottom to top, in the order of the file. Some may be optimised away.
     pub records: Vec<Record>,
-    /// The setting of each record when the program begins to play.
+    /// The setting of each record at the start of a play.
     pub start: Vec<LayerSetting>,
-    /// What a trigger of each record plays: how long it is on, off, on, and so on; empty for a record that is on all the
-    /// time.
+    /// The trigger pattern of each record: alternating on and off times; empty for a record without a pattern.
     pub patterns: Vec<Vec<Duration>>,
     /// The points that records name.
     pub points: Vec<Point>,
@@ -32,28 +31,27 @@ pub struct Program {
     pub bitmaps: Vec<Bitmap>,
     /// The title of each record in messages, with the number of its layer.
     pub titles: Vec<LayerTitle>,
-    /// Which record each layer of the file became, for a host that changes layers while they play.
+    /// Maps each layer of the file to its record, for a host that changes layers during play.
     pub layers: LayerMap,
-    /// The friction that the finger can be given.
+    /// The range of friction that the drive can render.
     pub reach: Reach,
-    /// Ticks of half a carrier period.
+    /// Ticks in half a carrier period.
     pub half_period_ticks: u32,
     /// The finger that the program is compiled for.
     pub finger: PlayedFinger,
-    /// Whether friction out of reach is clamped because the scene says so: `saturate = true`.
+    /// Whether friction out of reach is clamped by the scene's `saturate = true`.
     pub saturates: bool,
-    /// What the compiler says about the scene: refusals in the order of the file, then warnings and notes.
+    /// Diagnostics of the compiler: refusals in the order of the file, then warnings and notes.
     pub diagnostics: Vec<Diagnostic>,
 }
 
 impl Program {
-    /// Whether the program is a draft: only previews and the simulator in this process play it, and every output says
-    /// so.
+    /// Whether the program is a draft, which only previews and the in-process simulator play. Every output marks it.
     pub fn is_draft(&self) -> bool {
         self.refusals().next().is_some()
     }
 
-    /// The reasons for which a board refuses the scene. There are none unless the program is a draft, see
+    /// Reasons for which a board refuses the scene; empty unless the program is a draft, see
     /// [`compile_draft`](super::compile_draft).
     pub fn refusals(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|diagnostic| diagnostic.kind == DiagnosticKind::Refusal)
@@ -67,7 +65,7 @@ impl Program {
         })
     }
 
-    /// Conversions, roundings and clamps, a sentence each.
+    /// Conversions, roundings and clamps, one sentence each.
     pub fn notes(&self) -> impl Iterator<Item = &str> {
         self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
             Message::Note(sentence) => Some(sentence.as_str()),
@@ -83,8 +81,8 @@ impl Program {
         })
     }
 
-    /// The same scene without layers and pictures. A board plays it in between when it has no room for the pictures of
-    /// two scenes at once.
+    /// The same scene without layers and pictures. A board plays it in between if it has no room for the pictures of
+    /// two scenes.
     #[must_use]
     pub fn without_layers(&self) -> Self {
         let header = Header { electric_friction_max_n: None, ..self.header };
@@ -97,10 +95,10 @@ impl Program {
         self.scene_bytes_with(&self.start)
     }
 
-    /// As [`Self::scene_bytes`], with the gains of these settings, one for each record.
+    /// As [`Self::scene_bytes`], with the gains of these settings, one per record.
     ///
-    /// On a board, every layer is on from the commit until the host switches it off. A layer that is off has the gain 0,
-    /// so that it asks for nothing meanwhile.
+    /// A board turns every layer on at the commit. A layer that is off in `settings` gets the gain 0 until the host
+    /// switches it off.
     pub fn scene_bytes_with(&self, settings: &[LayerSetting]) -> Vec<u8> {
         // The compiler has checked the numbers of records and points.
         let mut bytes = self.header.write(self.records.len() as u8, self.points.len() as u8).to_vec();
@@ -116,7 +114,7 @@ impl Program {
         features_of(&self.header, self.records.iter().copied())
     }
 
-    /// Whether the friction depends on more than place, speed and time: on earlier clicks, or on a stream.
+    /// Whether friction depends on earlier clicks or on a stream, in addition to place, speed and time.
     pub fn has_history(&self) -> bool {
         self.records.iter().any(|record| record.layer.click().is_some() || record.layer.is_streamed())
     }

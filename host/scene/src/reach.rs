@@ -1,4 +1,4 @@
-//! The friction that a drive can give to a finger.
+//! The friction that a drive can render on a finger.
 
 use frixel_layers::Header;
 use frixel_model::{
@@ -7,10 +7,10 @@ use frixel_model::{
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
-/// Friction out of reach by less than this, relative to the reach, counts as a rounding error of `f32`.
+/// Relative tolerance for friction beyond the reach: the rounding error of `f32`.
 pub const ROUNDING: f64 = 1e-6;
 
-/// The range of friction that the drive can give: from natural friction, `mu F_N`, to that plus the largest electric
+/// The range of friction that the drive can render: from natural friction, `mu F_N`, to that plus the largest electric
 /// friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -22,7 +22,7 @@ pub struct Reach {
     pub voltage_max_v_rms: f64,
 }
 
-/// The reason why a board cannot play for a finger and a coating.
+/// The reason why a board cannot play a finger on a coating.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub(super) enum ReachError {
     #[error("the contact model refuses it: {0:?}")]
@@ -34,7 +34,7 @@ pub(super) enum ReachError {
 }
 
 impl Reach {
-    /// Computes the reach for the finger, coating and rms voltage of a header, from the board's `f32` numbers.
+    /// Computes the reach from the finger, coating and rms voltage of a header, with the board's `f32` numbers.
     pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
         let law = header.friction_law().map_err(ReachError::Contact)?;
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
@@ -52,18 +52,18 @@ impl Reach {
         })
     }
 
-    /// Least friction in total, in newtons.
+    /// Smallest total friction, in newtons.
     pub fn friction_min_n(&self) -> f64 {
         self.natural_friction_n
     }
 
-    /// Largest friction in total, in newtons.
+    /// Largest total friction, in newtons.
     pub fn friction_max_n(&self) -> f64 {
         self.natural_friction_n + self.electric_friction_max_n
     }
 }
 
-/// Computes the table that the board computes when the scene is committed.
+/// Computes the table as the board does at the commit of a scene.
 fn check_table(header: &Header) -> Result<(), ReachError> {
     let voltage_max_v_rms = header.voltage_max_v_rms;
     if let Some(law) = &header.law {

@@ -1,43 +1,43 @@
 //! Resamples pictures to the board's pitch.
 
-/// One axis of the grid that a picture is resampled to.
+/// One axis of a resampled picture's grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     /// Samples of the whole picture.
     pub(super) whole: usize,
-    /// Samples that are cropped before the first one.
+    /// Samples cropped before the first one.
     pub(super) skipped: usize,
     /// Samples along it.
     pub(super) samples: usize,
-    /// Pixels of the picture for each sample.
+    /// Picture pixels per sample.
     pub(super) pixels_per_sample: f64,
 }
 
 impl Axis {
-    /// The samples that cover `length_mm`. The last one may reach past the picture's end by less than a pitch.
+    /// Samples that cover `length_mm`. The last one may extend past the picture's end by less than a pitch.
     pub(super) fn covering(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
-        // A millionth of a sample is a rounding error and does not need one more sample.
+        // Ignore a rounding error of a millionth of a sample.
         let samples = (length_mm / pitch_mm - 1e-6).ceil().max(1.0) as usize;
         Self { whole: samples, skipped: 0, samples, pixels_per_sample: pixels as f64 * pitch_mm / length_mm }
     }
 
-    /// The samples that divide a length evenly, at about this pitch, so that it can be tiled.
+    /// Samples that divide a length evenly, at approximately this pitch, so that it can be tiled.
     pub(super) fn dividing(length_mm: f64, pitch_mm: f64, pixels: usize) -> Self {
         let samples = (length_mm / pitch_mm).round().max(1.0);
         let whole = samples as usize;
         Self { whole, skipped: 0, samples: whole, pixels_per_sample: pixels as f64 / samples }
     }
 
-    /// Only the samples that matter between two places, in samples from the start of the axis.
+    /// Crops the axis to the samples that matter between two places, in units of samples.
     pub(super) fn cropped(self, from: f64, to: f64) -> Self {
         let last = (self.samples - 1) as f64;
-        // A place depends on the samples whose centres are around it. A millionth of a sample is an effect of rounding.
+        // A place depends on the nearest sample centres. Ignore a rounding error of a millionth of a sample.
         let skipped = (from - 0.5 + 1e-6).floor().clamp(0.0, last) as usize;
         let end = (to - 0.5 - 1e-6).ceil().clamp(skipped as f64, last) as usize;
         Self { skipped, samples: end - skipped + 1, ..self }
     }
 
-    /// All samples of the picture, or all of its pixels if they are fewer.
+    /// The whole picture's samples, or its pixels if they are fewer.
     pub(super) fn whole_in_pixels(self, pixels: usize) -> Self {
         if self.pixels_per_sample < 1.0 {
             return Self { whole: pixels, skipped: 0, samples: pixels, pixels_per_sample: 1.0 };
@@ -45,7 +45,7 @@ impl Axis {
         Self { skipped: 0, samples: self.whole, ..self }
     }
 
-    /// The first pixel of a sample, and the weights of that pixel and those after it, which sum to one. A sample of one
+    /// The first pixel of a sample, and the weights of the pixels from there on, which sum to one. A sample of one
     /// pixel or more is the mean over its area. A smaller one is interpolated between pixel centres, and constant
     /// beyond the outermost ones.
     fn weights(self, sample: usize, pixels: usize) -> (usize, Vec<f64>) {
@@ -72,7 +72,8 @@ impl Axis {
     }
 }
 
-/// Resamples rows of `width` grey values from 0 to 255 to the grid of `across` and `down`, rounded to whole numbers.
+/// Resamples rows of `width` grey values (0 to 255) to the grid of `across` and `down`, and rounds them to whole
+/// numbers.
 pub(super) fn resample(grey: &[f32], width: usize, across: Axis, down: Axis) -> Vec<u8> {
     if width == 0 || grey.is_empty() {
         return Vec::new();

@@ -1,9 +1,9 @@
-//! The texts of a scene file and of the files that it includes, and places in them.
+//! The texts of a scene file and its included files, and places in them.
 
 use super::files::file_name;
 
-/// The files that a scene is read from, for messages about them. A place is a byte offset from the start of the first
-/// file; each further file begins behind the one before it.
+/// The files that a scene is read from, for use in messages. A place is a byte offset from the start of the first file;
+/// each file begins after the previous one.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Source {
     files: Vec<SourceFile>,
@@ -19,9 +19,9 @@ pub(super) struct SourceFile {
     pub(super) text: String,
     /// Offset of the file's first byte.
     pub(super) start: usize,
-    /// Numbers of the files that it includes.
+    /// Numbers of the included files.
     pub(super) includes: Vec<usize>,
-    /// Offsets in the text of its lines but the first.
+    /// Offsets of all lines of the text but the first.
     line_starts: Vec<usize>,
 }
 
@@ -34,7 +34,7 @@ impl Source {
 
     /// Adds a file, and returns its number.
     pub(super) fn add(&mut self, name: String, path: String, text: String) -> usize {
-        // One more than the text, so that the end of a file is a place of its own.
+        // One more than the text's length, so that the end of a file is a distinct place.
         let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
         let line_starts = text.match_indices('\n').map(|(newline, _)| newline + 1).collect();
         self.files.push(SourceFile { name, path, text, start, includes: Vec::new(), line_starts });
@@ -63,18 +63,18 @@ impl Source {
         self.files.first().map_or("", |file| &file.name)
     }
 
-    /// Number of the file that has a byte offset.
+    /// Number of the file at a byte offset.
     pub(super) fn number_at(&self, offset: usize) -> usize {
         self.files.partition_point(|file| file.start <= offset).saturating_sub(1)
     }
 
-    /// The name in messages of the file that has a byte offset.
+    /// The name in messages of the file at a byte offset.
     pub(super) fn name_at(&self, offset: usize) -> &str {
         self.files.get(self.number_at(offset)).map_or("", |file| &file.name)
     }
 
-    /// The path from the scene file's folder to a file that is named at a byte offset: names in a file start from its
-    /// own folder.
+    /// The path of a file named at a byte offset, relative to the scene file's folder. Names in a file are relative to
+    /// its own folder.
     pub(super) fn path_at(&self, offset: usize, name: &str) -> String {
         match self.number_at(offset) {
             _ if name.is_empty() => String::new(),
@@ -111,8 +111,8 @@ impl Source {
     }
 }
 
-/// The path of a file that the file at `path` calls `name`, without `.` and, where that is possible, without `..`, so
-/// that one file has one path. An absolute name does not depend on `path`.
+/// The path of a file called `name` by the file at `path`, without `.` and, where possible, without `..`, so that each
+/// file has one path. An absolute name does not depend on `path`.
 pub(super) fn joined(path: &str, name: &str) -> String {
     let is_absolute = name.starts_with(['/', '\\']) || name.get(1..2) == Some(":");
     let folder = if is_absolute { "" } else { path.strip_suffix(file_name(path)).unwrap_or_default() };

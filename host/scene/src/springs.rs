@@ -1,19 +1,19 @@
-//! The Winkler-Fuss springs that a board plays for a finger.
+//! The linear springs that approximate a finger on a board.
 //!
-//! The header of a compiled scene has one stiffness. A soft finger's stiffness depends on the force on it, Eq. (29), so
-//! that springs can only approximate it: their stiffness is chosen so that the friction at the largest voltage is that
-//! of the soft finger, and the largest deviation below that voltage is computed.
+//! The header of a compiled scene has a single stiffness. A soft finger's stiffness depends on the force, Eq. (29), so
+//! springs only approximate it. Their stiffness is chosen to match the soft finger's friction at the largest voltage;
+//! the largest deviation at lower voltages is computed.
 
 use frixel_model::{Contact, ContactModel, Finger, SoftFinger};
 
 use super::finger::{Elasticity, FingerProfile};
 use super::mistake::FitMistake;
 
-/// Largest deviation of springs from a soft finger that is played, as a part of the reachable electric friction. For
-/// the example finger this is 6.5 mN of 250 mN, a quarter of the smallest step of friction that is felt (11 %,
-/// Gueorguiev 2017).
+/// Largest allowed deviation of springs from a soft finger, as a fraction of the reachable electric friction. For the
+/// example finger, this is 6.5 mN of 250 mN, a quarter of the smallest perceptible step of friction (11 %, Gueorguiev
+/// 2017).
 const DEVIATION_MAX: f64 = 0.05;
-/// Voltages at which the two are compared.
+/// Number of voltages at which the two are compared.
 const VOLTAGES: u32 = 64;
 /// Bisection steps: the stiffness is found to the last bit.
 const STEPS: u32 = 80;
@@ -24,16 +24,16 @@ const STIFFNESS_PA_PER_M: (f64, f64) = (1e3, 1e14);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Springs {
     pub(super) stiffness_pa_per_m: f64,
-    /// Largest deviation from the finger's friction, as a part of the reachable electric friction; zero if the finger
-    /// is on springs itself.
+    /// Largest deviation from the finger's friction, as a fraction of the reachable electric friction; zero if the
+    /// finger has springs itself.
     pub(super) deviation: f64,
 }
 
 impl Springs {
-    /// The springs for a finger on an effective gap, at voltages up to the largest.
+    /// Springs for a finger on an effective gap, at voltages up to the largest.
     pub(super) fn of(profile: &FingerProfile, gap_m: f64, voltage_max_v_rms: f64) -> Result<Self, FitMistake> {
         match profile.elasticity {
-            // A law takes their place.
+            // The law takes their place.
             Elasticity::Empirical(_) => Ok(Self { stiffness_pa_per_m: 0.0, deviation: 0.0 }),
             Elasticity::WinklerFuss { stiffness_pa_per_m } => Ok(Self { stiffness_pa_per_m, deviation: 0.0 }),
             Elasticity::Soft { modulus_pa, stress_exponent, shape_constant } => {
@@ -52,7 +52,7 @@ impl Springs {
         }
     }
 
-    /// The mistake of springs that differ too much from their soft finger.
+    /// The mistake if the springs differ too much from their soft finger.
     pub(super) fn mistake(&self) -> Option<FitMistake> {
         let found_percent = 100.0 * self.deviation;
         let mistake = FitMistake::SoftFinger { found_percent, max_percent: 100.0 * DEVIATION_MAX };

@@ -1,4 +1,4 @@
-//! The layers of a scene: those of the files that it includes below its own, each with the defaults that it shares.
+//! The layers of a scene: included files first, each file with its own defaults.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -15,7 +15,7 @@ use super::mistake::FileMistake;
 use super::schema::variant::known_layer_fields;
 use super::tables;
 
-/// Every field that a layer of any kind can have.
+/// Every field of any kind of layer.
 pub(super) static LAYER_FIELDS: LazyLock<Vec<KnownField>> = LazyLock::new(known_layer_fields);
 
 /// The layer tables and defaults of one file.
@@ -33,7 +33,7 @@ pub(super) struct LayerTables<'i> {
 }
 
 impl<'i> LayerTables<'i> {
-    /// Takes the tables out of the fields of a scene's files, the scene file's first.
+    /// Takes the layer tables out of the fields of a scene's files, of which the scene file is the first.
     pub(super) fn of(files: &mut [Fields<'i>], log: &mut Log) -> Self {
         let mut misspelt = Vec::new();
         let parts: Vec<Part<'i>> = files.iter_mut().map(|fields| part(fields, &mut misspelt, log)).collect();
@@ -50,7 +50,7 @@ impl<'i> LayerTables<'i> {
         Self { layers, defaults: own_defaults }
     }
 
-    /// The paths from the scene file's folder of all pictures that layers name, those of layers with mistakes included.
+    /// The paths of all pictures that layers name, relative to the scene file's folder, including layers with mistakes.
     pub(super) fn pictures(&self, log: &Log) -> Vec<String> {
         let named = self.layers.iter().filter_map(|layer| layer.raw_text("picture"));
         named.map(|(offset, name)| log.source().path_at(offset, &name)).collect()
@@ -63,7 +63,7 @@ impl<'i> LayerTables<'i> {
             log.add(first.table_place(), too_many(self.layers.len()));
             return Vec::new();
         }
-        // Read every layer, so that the mistakes of all are reported.
+        // Read every layer, to report the mistakes of all.
         let mut layers = Vec::new();
         for (number, table) in (1..).zip(self.layers) {
             let mistakes = log.mistakes();
@@ -103,8 +103,8 @@ fn part<'i>(fields: &mut Fields<'i>, misspelt: &mut Vec<String>, log: &mut Log) 
     Part { layers: fields.tables(log, &tables::scene::LAYER).unwrap_or_default(), defaults }
 }
 
-/// The numbers of the files from bottom to top, from those that file `number` includes to itself, each with the
-/// defaults of its layers: its own before those of the files that it includes, of which the last one counts.
+/// The numbers of the files from bottom to top, ending with file `number`, each with the defaults of its layers. Its
+/// own defaults take precedence over those of included files, of which the last one counts.
 fn stack<'i>(number: usize, parts: &[Part<'i>], log: &Log, stacked: &mut Vec<(usize, DeTable<'i>)>) -> DeTable<'i> {
     let mut defaults = DeTable::new();
     let includes = log.source().files().get(number).map_or(&[][..], |file| &file.includes);
@@ -125,7 +125,7 @@ fn settle(layer: &mut Layer, log: &Log) {
     }
 }
 
-/// Most layers of a scene, copies included; no board takes more than 255.
+/// Largest number of layers in a scene, including copies; no board plays more than 255.
 const LAYERS_MAX: usize = 4_096;
 
 /// Refuses layers of the same name in two files.

@@ -1,5 +1,5 @@
-//! The tables of fields that belong to no kind of layer, and the parts that the tables of the kinds share. The parser
-//! checks the fields; [`super::json_schema`] and `docs/scene.md` show them.
+//! The tables that belong to no kind of layer, and the parts that the kinds share. The parser checks the fields;
+//! [`super::json_schema`] and `docs/scene.md` show them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
 use frixel_layers::range;
@@ -55,11 +55,11 @@ pub(crate) const FRICTION_N: Range = Range::new(range::FRICTION_N.min, range::FR
 pub(crate) const FRACTION: Range = Range::new(-1.0, 1.0, "");
 pub(crate) const FACTOR: Range = Range::new(range::FRICTION_N.min, range::FRICTION_N.max, "");
 pub(crate) const PLACE_MM: Range = Range::new(-2_000.0, 2_000.0, " mm");
-/// Pixels of a design; in millimetres they have the range of the field in millimetres.
+/// Pixels of a design. Converted to millimetres, they have the range of the field in millimetres.
 pub(crate) const PIXELS: Range = Range::new(-1e6, 1e6, " px");
 pub(crate) const SIZE_MM: Range = Range::new(0.01, 2_000.0, " mm");
 pub(crate) const WAVELENGTH_MM: Range = Range::new(0.05, 2_000.0, " mm");
-/// Ten thousand turns either way.
+/// Angles up to ten thousand turns either way.
 pub(crate) const ANGLE_DEG: Range = Range::new(-3_600_000.0, 3_600_000.0, " degrees");
 
 /// The two amounts that limit most kinds.
@@ -117,7 +117,7 @@ pub(super) mod screen {
     use super::*;
 
     pub(crate) const NAME: FieldSpec =
-        FieldSpec::new("name", Holds::Text, Means("none"), "what finger profiles call it that were measured on it");
+        FieldSpec::new("name", Holds::Text, Means("none"), "name by which finger profiles refer to this screen");
 
     const SIZE: Range = Range::new(5.0, 2_000.0, " mm");
     pub(crate) const WIDTH_MM: FieldSpec = number("width_mm", SIZE, Mistake, "width of the screen, along x");
@@ -130,9 +130,9 @@ pub(super) mod screen {
     );
     const NO_LIMIT: Absence = Means("no limit of its own");
     pub(crate) const VOLTAGE_MAX_V_RMS: FieldSpec =
-        number("voltage_max_v_rms", super::drive::V_RMS, NO_LIMIT, "largest rms voltage that the screen bears");
+        number("voltage_max_v_rms", super::drive::V_RMS, NO_LIMIT, "largest rms voltage that the screen withstands");
     pub(crate) const VOLTAGE_MAX_V_PEAK: FieldSpec =
-        number("voltage_max_v_peak", super::drive::V_PEAK, NO_LIMIT, "largest peak voltage that the screen bears");
+        number("voltage_max_v_peak", super::drive::V_PEAK, NO_LIMIT, "largest peak voltage that the screen withstands");
     pub(crate) const SLEW_V_PER_US: FieldSpec =
         number("slew_v_per_us", super::drive::SLEW, NO_LIMIT, "fastest change of the envelope");
 }
@@ -146,25 +146,28 @@ pub(super) mod touch_source {
     const LENGTH: Range = Range::new(0.0, 10.0, " mm");
     pub(crate) const REPORTS_PER_S: FieldSpec =
         number("reports_per_s", Range::new(1.0, 40_000.0, " a second"), Mistake, "reports a second");
-    pub(crate) const LATENCY_MS: FieldSpec =
-        number("latency_ms", TIME, Mistake, "time from a sample to the arrival of its report, as the source states it");
+    pub(crate) const LATENCY_MS: FieldSpec = number(
+        "latency_ms",
+        TIME,
+        Mistake,
+        "latency from a sample to the arrival of its report, as the source states it",
+    );
     pub(crate) const JITTER_MS: FieldSpec =
-        number("jitter_ms", TIME, Number(0.0), "standard deviation of that time, which the source does not state");
-    pub(crate) const NOISE_MM: FieldSpec =
-        number("noise_mm", LENGTH, Number(0.0), "rms noise of the place in each axis");
-    pub(crate) const STEP_MM: FieldSpec = number("step_mm", LENGTH, Number(0.0), "steps of the place in each axis");
+        number("jitter_ms", TIME, Number(0.0), "standard deviation of the latency; not stated by the source");
+    pub(crate) const NOISE_MM: FieldSpec = number("noise_mm", LENGTH, Number(0.0), "rms position noise, each axis");
+    pub(crate) const STEP_MM: FieldSpec = number("step_mm", LENGTH, Number(0.0), "position resolution, each axis");
     pub(crate) const LOST_SHARE: FieldSpec =
-        number("lost_share", SHARE, Number(0.0), "part of the reports that are lost");
+        number("lost_share", SHARE, Number(0.0), "fraction of the reports that are lost");
     pub(crate) const BUNCHED_SHARE: FieldSpec =
-        number("bunched_share", SHARE, Number(0.0), "part of the reports that wait for the next one");
+        number("bunched_share", SHARE, Number(0.0), "fraction of the reports that arrive together with the next one");
     pub(crate) const PAUSES_PER_S: FieldSpec = number(
         "pauses_per_s",
         Range::new(0.0, 10.0, " a second"),
         Number(0.0),
-        "pauses a second, in which every report is lost",
+        "pauses per second; every report in a pause is lost",
     );
     pub(crate) const PAUSE_MAX_MS: FieldSpec =
-        number("pause_max_ms", TIME, Number(0.0), "longest pause; all lengths up to it are as likely");
+        number("pause_max_ms", TIME, Number(0.0), "longest pause; durations are uniformly distributed");
 }
 
 /// A slab of the coating.
@@ -193,7 +196,7 @@ pub(super) mod finger {
     pub(crate) const FRICTION_COEFFICIENT: FieldSpec =
         number("friction_coefficient", COEFFICIENT, Mistake, "friction coefficient on the bare screen");
     const LOAD_N: Range = Range::new(0.0, 50.0, " N");
-    pub(crate) const NORMAL_LOAD_N: FieldSpec = number("normal_load_n", LOAD_N, Mistake, "how hard the finger presses");
+    pub(crate) const NORMAL_LOAD_N: FieldSpec = number("normal_load_n", LOAD_N, Mistake, "normal load of the finger");
     pub(crate) const SKIN_GAP_UM: FieldSpec = number(
         "skin_gap_um",
         Range::new(0.0, 10_000.0, " um"),
@@ -203,7 +206,7 @@ pub(super) mod finger {
     pub(crate) const MODEL: FieldSpec = word(
         "model",
         Means("`\"winkler-fuss\"`"),
-        "`\"winkler-fuss\"`: springs of one stiffness; `\"soft\"`: a material that stiffens under stress, see \
+        "`\"winkler-fuss\"`: linear springs; `\"soft\"`: a material that stiffens under stress, see \
          [soft fingers](#soft-fingers)",
     );
     pub(crate) const MODULUS_PA: FieldSpec =
@@ -212,15 +215,15 @@ pub(super) mod finger {
         "stress_exponent",
         Range::new(0.02, 1.0, ""),
         Mistake,
-        "stress exponent of a soft finger: strain grows as stress to this power's inverse",
+        "stress exponent of a soft finger: strain is proportional to stress^(1/exponent)",
     );
     pub(crate) const SHAPE_CONSTANT: FieldSpec =
         number("shape_constant", Range::new(0.001, 1_000.0, ""), Mistake, "constant `B` of a soft finger, Eq. (24)");
     pub(crate) const ORIGIN: FieldSpec = word(
         "origin",
         Means("`\"assumed\"`"),
-        "what the numbers rest on: `\"assumed\"`; `\"perceptual\"`, a person said what they felt; `\"measured\"`, with \
-         a force sensor; or `\"empirical\"`, with a force sensor, as a law of the voltage, see \
+        "source of the numbers: `\"assumed\"`; `\"perceptual\"`: reported by a person; `\"measured\"`: with a force \
+         sensor; or `\"empirical\"`: with a force sensor, as a law of the voltage, see \
          [empirical fingers](#empirical-fingers)",
     );
     pub(crate) const EXPONENT: FieldSpec = number(
@@ -233,7 +236,7 @@ pub(super) mod finger {
         "points",
         Holds::Pairs(Range::new(0.0, 1_000.0, "")),
         Mistake,
-        "1 to 16 points `[V rms, N]`: voltage and electric friction under `normal_load_n`; both rise",
+        "1 to 16 points `[V rms, N]`: voltage and electric friction under `normal_load_n`, both ascending",
     );
     pub(crate) const INTERVALS_N: FieldSpec = FieldSpec::new(
         "intervals_n",
@@ -292,7 +295,7 @@ pub(super) mod drive {
         "host_timeout_ms",
         Range::new(20.0, 1_000.0, " ms"),
         Number(250.0),
-        "the output goes to zero when the host is silent for so long",
+        "silence of the host after which the output goes to zero",
     );
     pub(crate) const SATURATE: FieldSpec =
         flag("saturate", false, "friction out of reach is clamped and flagged, not refused");
@@ -303,13 +306,13 @@ pub(super) mod carrier {
     use super::*;
 
     pub(crate) const SHAPE: FieldSpec =
-        word("shape", Means("`\"square\"`"), "`\"square\"`, whose square has no ripple, or `\"sine\"`");
+        word("shape", Means("`\"square\"`"), "`\"square\"`, which has no ripple in V^2, or `\"sine\"`");
     /// Below this frequency the drive is not an alternating carrier. The upper limit depends on the board's ticks.
     pub(crate) const FREQUENCY_HZ: FieldSpec = number(
         "frequency_hz",
         Range::new(125.0, 100_000.0, " Hz, and at most an eighth of the board's ticks a second"),
         Number(1_000.0),
-        "rounded to whole ticks for each half period, which is reported",
+        "rounded to whole ticks per half period; the rounding is reported",
     );
 }
 
@@ -318,12 +321,12 @@ pub(super) mod touch {
     use super::*;
 
     pub(crate) const PREDICTION: FieldSpec =
-        flag("prediction", true, "the board estimates where the finger is now from touch reports that are late");
+        flag("prediction", true, "the board predicts the current position of the finger from late touch reports");
     pub(crate) const LEADER: FieldSpec = word(
         "leader",
         Means("`\"first\"`"),
-        "which of several fingers is followed, since one electrode gives one effect: the one that came `\"first\"` of \
-         those on the screen, or the `\"latest\"`; when it lifts, the rule finds the next",
+        "which of several fingers is followed, since one electrode renders one effect: the `\"first\"` on the screen, \
+         or the `\"latest\"`; when it lifts, the rule selects the next",
     );
 }
 
@@ -333,9 +336,9 @@ pub(super) mod design {
 
     const SIZE: Range = Range::new(1.0, 100_000.0, " px");
     pub(crate) const WIDTH_PX: FieldSpec =
-        number("width_px", SIZE, Mistake, "width of the design, which is the width of the screen");
+        number("width_px", SIZE, Mistake, "width of the design; it spans the width of the screen");
     pub(crate) const HEIGHT_PX: FieldSpec =
-        number("height_px", SIZE, Mistake, "height of the design, which is the height of the screen");
+        number("height_px", SIZE, Mistake, "height of the design; it spans the height of the screen");
 }
 
 /// `[[layer]]`: the fields that every kind has.
@@ -344,7 +347,7 @@ pub(super) mod layer {
 
     pub(crate) const KIND: FieldSpec = word("kind", Mistake, "what the layer is: one of the kinds below");
     pub(crate) const NAME: FieldSpec =
-        FieldSpec::new("name", Holds::Text, Means("its number and kind"), "what messages call it");
+        FieldSpec::new("name", Holds::Text, Means("its number and kind"), "its name in messages");
     pub(crate) const REGION: FieldSpec = FieldSpec::new(
         "region",
         Holds::Table,
@@ -360,36 +363,36 @@ pub(super) mod layer {
     pub(crate) const BLEND: FieldSpec = word(
         "blend",
         Means("`\"replace\"`; for an edge `\"add\"`, for a curve of speed `\"multiply\"`"),
-        "how it joins the layers below, see [blends](#blends)",
+        "how it combines with the layers below, see [blends](#blends)",
     );
     pub(crate) const GAIN: FieldSpec = number(
         "gain",
         Range::new(range::GAIN.min, range::GAIN.max, ""),
         Number(1.0),
-        "factor on what the layer asks for above natural friction; on the factor, where it multiplies",
+        "factor on the layer's friction above natural friction, or on its factor if it multiplies",
     );
     pub(crate) const ABOVE: FieldSpec = word(
         "above",
         Means("see there"),
-        "see [what can be reached](#what-can-be-reached); a layer that is added is a difference, and cannot be `\"zero\"`",
+        "zero point of friction in newtons, see [what can be reached](#what-can-be-reached); not `\"zero\"` if added",
     );
     pub(crate) const LIVE: FieldSpec = flag(
         "live",
         false,
-        "`true`: the host puts it on and off or changes its gain while it plays, so that it is never \
-         [left out](#what-is-left-out), and hides nothing for good",
+        "`true`: the host may switch the layer or change its gain during play, so it is never \
+         [left out](#what-is-left-out) and hides no other layer for good",
     );
     pub(crate) const PATTERN_MS: FieldSpec = FieldSpec::new(
         "pattern_ms",
         Holds::Numbers(Range::new(1.0, 60_000.0, " ms")),
         Means("on"),
-        "what a `trigger` of the layer plays, see [while it plays](#while-it-plays): how long it is on, off, on, and so \
-         on, 1 to 64 times; it needs `live = true`",
+        "pattern of a `trigger` of the layer, see [while it plays](#while-it-plays): alternating on and off times, 1 \
+         to 64; needs `live = true`",
     );
     pub(crate) const START: FieldSpec = word(
         "start",
         Means("`\"on\"`"),
-        "`\"off\"`: the layer is as if it were not there until the host switches it on; it needs `live = true`",
+        "`\"off\"`: the layer is inactive until the host switches it on; needs `live = true`",
     );
 }
 
@@ -405,9 +408,9 @@ pub(super) mod repeat {
     pub(crate) const ROWS: FieldSpec =
         FieldSpec::new("rows", Holds::Whole(COPIES), Number(1.0), "copies below one another");
     pub(crate) const DX: LengthFields =
-        length!("dx", X, STEP_MM, Number(0.0), "from a column to the next; not 0 with several columns");
+        length!("dx", X, STEP_MM, Number(0.0), "spacing of columns; not 0 with several columns");
     pub(crate) const DY: LengthFields =
-        length!("dy", Y, STEP_MM, Number(0.0), "from a row to the next; not 0 with several rows");
+        length!("dy", Y, STEP_MM, Number(0.0), "spacing of rows; not 0 with several rows");
 }
 
 /// `region` of a layer.
@@ -424,9 +427,9 @@ pub(super) mod region {
     pub(crate) const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "top side of rectangle or ellipse");
     pub(crate) const WIDTH: LengthFields = length!("width", X, SIZE_MM, Mistake, "width of rectangle or ellipse");
     pub(crate) const HEIGHT: LengthFields = length!("height", Y, SIZE_MM, Mistake, "height of rectangle or ellipse");
-    const POINTS: &str = "3 to 32 vertices of a polygon, `[[x, y], [x, y], [x, y]]`; the time of a tick allows some ten \
-        of them under one finger. Where its lines cross, what they go around twice is outside. Of two polygons with a \
-        common edge, each place is in one";
+    const POINTS: &str = "3 to 32 vertices of a polygon, `[[x, y], [x, y], [x, y]]`; a tick has time for about ten \
+        polygons under one finger. Lines that cross follow the even-odd rule. A place on an edge shared by two \
+        polygons belongs to exactly one of them";
     pub(crate) const POINTS_MM: FieldSpec = FieldSpec::new("points_mm", Holds::Pairs(PLACE_MM), Mistake, POINTS);
     pub(crate) const POINTS_PX: FieldSpec = FieldSpec::new("points_px", Holds::Pairs(PIXELS), Mistake, POINTS);
 }

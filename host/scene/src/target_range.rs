@@ -1,4 +1,4 @@
-//! The range of a program's target friction over its screen, and how much of it is out of reach.
+//! The range of a program's target friction over its screen, and the part out of reach.
 
 use std::collections::BTreeSet;
 
@@ -9,37 +9,37 @@ use super::cover::{interval_at, widened};
 use super::program::Program;
 use crate::reference::Reference;
 
-/// Places that are evaluated along the longer side of the screen.
+/// Number of places evaluated along the longer side of the screen.
 const PLACES: f64 = 600.0;
-/// Most further places that are evaluated where several varying layers may exceed the range found at those places.
+/// Largest number of further places evaluated where several varying layers may exceed the range found so far.
 const SEARCHED_MAX: usize = 100_000;
 
-/// The range of a program's target friction anywhere on its screen, at any time and speed, with clicks and streams at
-/// their largest.
+/// The range of a program's target friction over its screen, at all times and speeds, with clicks and streams at their
+/// largest.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TargetRange {
-    /// Least friction, in total, N.
+    /// Smallest total friction, N.
     pub least_n: f64,
-    /// Largest friction, in total, N.
+    /// Largest total friction, N.
     pub most_n: f64,
-    /// Where the target exceeds the friction that the drive can give, and is clamped.
+    /// The part of the screen where the target exceeds the reachable friction, and is clamped.
     pub above: OutOfReach,
-    /// Where the target is less than the friction at no voltage, and is clamped.
+    /// The part of the screen where the target is below natural friction, and is clamped.
     pub below: OutOfReach,
 }
 
 /// The part of a screen on one side of the reach.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OutOfReach {
-    /// Its area, in percent of the screen.
+    /// Its area as a percentage of the screen.
     pub screen_percent: f64,
     /// The layers that apply there.
     pub layers: Vec<String>,
 }
 
 impl TargetRange {
-    /// Evaluates a grid of places all over the screen. Least and largest friction also count where layers reach them
-    /// between these places, as in a refusal: a noise counts in full, several varying layers as far as a search finds.
+    /// Evaluates a grid of places over the screen. The extremes include those between the places, as in a refusal: a
+    /// noise counts in full, and several varying layers count as far as a search finds.
     pub fn of(program: &Program) -> Self {
         let reference = Reference::new(program);
         let pieces = reference.pieces();

@@ -1,4 +1,4 @@
-//! Refuses a scene whose tick takes too long at some place, by the same estimate as the board.
+//! Refuses a scene whose longest tick exceeds the limit, by the same estimate as the board.
 
 use std::cmp::Reverse;
 
@@ -13,11 +13,11 @@ use super::program::Program;
 use super::reference::Shape;
 use super::titles::{LayerTitle, listed};
 
-/// Reports a mistake if the longest tick is estimated at more than `cycles_max` on a core. Its position is that of the topmost
-/// layer at the place.
+/// Reports a mistake if the longest tick is estimated at more than `cycles_max` on a core, at the topmost layer of that
+/// place.
 ///
-/// The board adds up all layers of a cell of its grid. The message names the layers that meet at one place of that cell
-/// if these alone take too long; otherwise it names all layers of the cell.
+/// The board adds up all layers in a cell of its grid. The message names the layers that overlap at one place of that
+/// cell if they alone exceed the limit; otherwise it names all layers of the cell.
 pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u32, log: &mut Log) {
     let worst = program.worst_tick(core);
     if worst.cycles(core) <= cycles_max {
@@ -37,17 +37,17 @@ pub(super) fn check(scene: &Scene, program: &Program, core: Core, cycles_max: u3
     log.add(topmost.map_or(0, |layer| layer.places.table()), mistake);
 }
 
-/// Layers that all apply at one place.
+/// Layers that overlap at one place.
 struct Meeting {
     place_m: (f64, f64),
     /// Numbers of the layers, from bottom to top.
     layers: Vec<usize>,
-    /// Estimated cycles of a tick in which only these layers act.
+    /// Estimated cycles of a tick with these layers only.
     cycles: u32,
 }
 
 impl Program {
-    /// The longest tick on a core, as the board estimates it.
+    /// The longest tick on a core, as estimated by the board.
     pub fn worst_tick(&self, core: Core) -> Worst {
         worst_of_scene(&self.header, &self.records, &self.points, core)
     }
@@ -57,10 +57,10 @@ impl Program {
         layer_numbers(cell.layers).filter_map(|number| self.titles.get(number)).collect()
     }
 
-    /// Finds the place in a cell where the layers that meet take most cycles.
+    /// Finds the place in a cell where the overlapping layers take most cycles.
     ///
     /// Tries every pair of a left and a top edge, moved inside by a micrometre: if rectangles overlap, one of these
-    /// places lies within all of them. Also tries centres, for ellipses and polygons.
+    /// places lies within all of them. Also tries the centres of ellipses and polygons.
     fn dearest_meeting(&self, cell: &Cell, core: Core) -> Option<Meeting> {
         let mut costs = LayerCosts::new(&self.header, core);
         for (number, record) in (0..).zip(&self.records) {
@@ -82,7 +82,7 @@ impl Program {
         xs.iter()
             .flat_map(|x_m| ys.iter().map(|y_m| (*x_m, *y_m)))
             .map(|place_m| meeting_at(place_m, &shapes, &costs, core))
-            // The first of the places that take most: a corner if there is one.
+            // The first of the most expensive places: a corner if there is one.
             .min_by_key(|meeting| Reverse(meeting.cycles))
     }
 }
@@ -94,11 +94,10 @@ fn meeting_at(place_m: (f64, f64), shapes: &[(usize, Shape)], costs: &LayerCosts
     Meeting { place_m, layers, cycles }
 }
 
-/// Distance inside a region's edges at which meetings are tried, m: above rounding errors, and far below what a finger
-/// notices.
+/// Distance inside a region's edges at which overlaps are tried, m: above rounding errors, and imperceptible.
 const INSIDE_M: f64 = 1e-6;
 
-/// The centre of a cell, to a tenth of a millimetre: the grid is coarse.
+/// The centre of a cell, rounded to a tenth of a millimetre, since the grid is coarse.
 pub fn middle_mm(cell: &Cell) -> (f64, f64) {
     rounded_mm((f64::from(cell.x_m), f64::from(cell.y_m)))
 }
@@ -143,8 +142,8 @@ mod tests {
         let cycles = program.worst_tick(Core::CortexM4f).cycles(Core::CortexM4f);
         let line = 2 * 7 + HEAD.lines().count() + 1;
         let expected = format!(
-            "test.toml:{line}:1: layer 2 (grating) and layer 3 (grating) meet at x 95 mm, y 0 mm: a tick there is estimated at \
-             {cycles} cycles, and the board has time for {}: move layers apart, or leave some out",
+            "test.toml:{line}:1: layer 2 (grating) and layer 3 (grating) overlap at x 95 mm, y 0 mm: a tick there is \
+             estimated at {cycles} cycles, and the board has time for {}: move layers apart, or leave some out",
             cycles - 1
         );
         assert_eq!(message(&text, -1), Some(expected));
@@ -157,7 +156,7 @@ mod tests {
         let text = format!("{HEAD}{}{}", layer(0), layer(20));
         let message = message(&text, -1).expect("it is refused");
         assert!(
-            message.contains("layer 1 (grating) and layer 2 (grating) are in one cell of the board's grid"),
+            message.contains("layer 1 (grating) and layer 2 (grating) share a cell of the board's grid"),
             "{message}"
         );
     }

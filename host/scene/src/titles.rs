@@ -4,14 +4,13 @@ use std::fmt::{self, Display};
 
 use serde::{Serialize, Serializer};
 
-/// Copies of one layer from which on a list names only the first.
+/// Number of copies from which on a list names only the first.
 const FOLDED_MIN: usize = 3;
 
-/// The number of a layer, by which it is known in messages and in `frixel play --control`: `3`, or `3.2` for a layer
-/// with `repeat`.
+/// The number of a layer in messages and in `frixel play --control`: `3`, or `3.2` for a copy of a layer with `repeat`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerNumber {
-    /// The number of its `[[layer]]` among those of the scene, from one at the bottom.
+    /// The number of its `[[layer]]` in the scene, from one at the bottom.
     pub table: usize,
     /// The number of the copy, from one, of a layer with `repeat`.
     pub copy: Option<usize>,
@@ -27,7 +26,7 @@ impl Display for LayerNumber {
     }
 }
 
-/// What messages call a layer: its number, with its name or kind.
+/// Title of a layer in messages: its number, with its name or kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LayerTitle {
     number: LayerNumber,
@@ -54,12 +53,12 @@ impl LayerTitle {
         self.number
     }
 
-    /// The layer's name, for a place too small for the title; the title of a layer without a name.
+    /// The layer's name, where the title is too long; the title for a layer without a name.
     pub fn name_or_title(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.text)
     }
 
-    /// The title as messages have it.
+    /// The title as it appears in messages.
     pub fn as_str(&self) -> &str {
         &self.text
     }
@@ -77,13 +76,13 @@ impl Serialize for LayerTitle {
     }
 }
 
-/// The titles of layers as a sentence lists them, with copies folded.
+/// The titles of layers, listed as in a sentence, with copies folded.
 pub(super) fn listed(titles: &[&LayerTitle]) -> String {
     fold_copies(titles).join(" and ")
 }
 
-/// The titles of layers for a list. Of several copies of one layer that follow one another, only the first is named, and
-/// the others are counted.
+/// The titles of layers for a list. Of consecutive copies of one layer, only the first is named; the others are
+/// counted.
 pub fn fold_copies(titles: &[&LayerTitle]) -> Vec<String> {
     let are_copies =
         |one: LayerNumber, other: LayerNumber| one.copy.is_some() && other.copy.is_some() && one.table == other.table;

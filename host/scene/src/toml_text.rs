@@ -1,13 +1,13 @@
-//! The one way from a text to TOML, with limits on what the text may hold: the parser, and what walks its tables, call
-//! themselves once for each table in a table.
+//! Parses TOML, with limits on size and nesting: the parser and the code that walks its tables recurse once for each
+//! nested table.
 
 use toml::de::DeTable;
 
 use super::mistake::FileMistake;
 
-/// Largest text of a scene, a profile, a scenario or a plan, in bytes: some 20,000 layers, of which a board takes 255.
+/// Largest text of a scene, profile, scenario or plan, in bytes: about 20,000 layers, of which a board plays 255.
 pub const TEXT_MAX_BYTES: u64 = 4 << 20;
-/// Most tables, lists and parts of a name inside one another.
+/// Deepest nesting of tables, lists and parts of a name.
 const NESTING_MAX: usize = 64;
 
 /// The tables of a text, or the offset of its first mistake.
@@ -19,7 +19,7 @@ pub(crate) fn toml(text: &str) -> Result<DeTable<'_>, (usize, FileMistake)> {
     DeTable::parse(text).map(toml::Spanned::into_inner).map_err(syntax)
 }
 
-/// Checks that a text is short and flat enough for a parser of TOML; otherwise returns where it is not.
+/// Checks the size and nesting of a text before parsing it; otherwise returns the offending place.
 pub fn check_toml(text: &str) -> Result<(), (usize, FileMistake)> {
     if text.len() as u64 > TEXT_MAX_BYTES {
         let advice = "divide it, or leave out what is not needed";
@@ -37,7 +37,7 @@ pub fn check_toml(text: &str) -> Result<(), (usize, FileMistake)> {
     }
 }
 
-/// The first place with the most tables, lists and parts of a name inside one another, and how many these are.
+/// The first place of the deepest nesting of tables, lists and parts of a name, and its depth.
 fn deepest(text: &str) -> (usize, usize) {
     let bytes = text.as_bytes();
     let mut deepest = (0, 0);
@@ -48,7 +48,7 @@ fn deepest(text: &str) -> (usize, usize) {
         match byte {
             b'"' | b'\'' => at = end_of_string(bytes, at, *byte),
             b'#' => {
-                // To the last byte before the end of the line.
+                // Continue at the last byte before the end of the line.
                 let rest = bytes.get(at..).unwrap_or_default();
                 at += rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len()) - 1;
             }
@@ -73,8 +73,8 @@ fn deepest(text: &str) -> (usize, usize) {
     deepest
 }
 
-/// Where the string that begins here has its last quotation mark. One without an end goes on to the end of its line, or
-/// of the text.
+/// Offset of the last quotation mark of the string that begins here. An unterminated string extends to the end of its
+/// line, or of the text.
 fn end_of_string(bytes: &[u8], start: usize, quote: u8) -> usize {
     let is_long = bytes.get(start..start + 3).is_some_and(|three| three == [quote; 3]);
     let mut at = start + if is_long { 3 } else { 1 };

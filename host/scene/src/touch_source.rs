@@ -1,4 +1,4 @@
-//! Reads the file of a touch source: how often, how late and how reliably a touchscreen reports the finger.
+//! Reads the file of a touch source: rate, latency and reliability of a touchscreen's reports.
 
 use std::fmt::{self, Display};
 
@@ -10,7 +10,7 @@ use super::fields::{Fields, read_text};
 use super::log::Log;
 use super::tables::touch_source as fields_of;
 
-/// A touch source in the units and by the keys of its file.
+/// A touch source in the units and field names of its file.
 ///
 /// ```
 /// use frixel_scene::TouchSource;
@@ -19,21 +19,21 @@ use super::tables::touch_source as fields_of;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TouchSource {
-    /// Reports a second.
+    /// Reports per second.
     pub reports_per_s: f64,
-    /// Time from the sample to its arrival, ms.
+    /// Latency from sample to arrival, ms.
     pub latency_ms: f64,
-    /// Standard deviation of that time, ms.
+    /// Jitter: standard deviation of the latency, ms.
     pub jitter_ms: f64,
-    /// Noise of the place, rms, mm.
+    /// Position noise, rms, mm.
     pub noise_mm: f64,
-    /// Steps of the place, mm; 0 for none.
+    /// Position resolution, mm; 0 for unlimited.
     pub step_mm: f64,
-    /// Part of the reports that never arrive.
+    /// Fraction of the reports that never arrive.
     pub lost_share: f64,
-    /// Part of the reports that arrive with the next one.
+    /// Fraction of the reports that arrive together with the next one.
     pub bunched_share: f64,
-    /// Pauses a second.
+    /// Pauses per second.
     pub pauses_per_s: f64,
     /// Longest pause, ms.
     pub pause_max_ms: f64,
@@ -41,7 +41,7 @@ pub struct TouchSource {
 
 impl From<&TouchConfig> for TouchSource {
     fn from(source: &TouchConfig) -> Self {
-        // Digits that only the change of units makes.
+        // Remove digits that result from converting units.
         let rounded = |value: f64| (1e9 * value).round() / 1e9;
         Self {
             reports_per_s: rounded(source.rate_hz),

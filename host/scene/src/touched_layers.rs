@@ -1,26 +1,25 @@
-//! Which layers of a program a finger has touched.
+//! Records which layers of a program a finger has touched.
 
 use super::program::Program;
 use super::titles::LayerTitle;
 use crate::reference::Reference;
 
-/// Places that are tried along each side of a layer's region.
+/// Number of places tried along each side of a layer's region.
 const PLACES: u32 = 40;
 
-/// Records which layers a finger has touched on its way. A layer under one that is on and replaces it is not touched
-/// there.
+/// Records which layers a finger has touched. A layer hidden by one that is on and replaces it is not touched there.
 #[derive(Clone, Debug)]
 pub struct TouchedLayers {
     reference: Reference,
     screen_m: (f64, f64),
     titles: Vec<LayerTitle>,
     touched: Vec<bool>,
-    /// The layers that are off, by their index from the bottom: they hide nothing.
+    /// Indices from the bottom of the layers that are off, which hide nothing.
     off: Vec<usize>,
 }
 
-/// The middle of a layer, from the top left corner of the screen, and the sides of the rectangle around the layer, as far
-/// as it is on the screen, in metres.
+/// The middle of a layer from the top left corner of the screen, and the sides of its bounding rectangle within the
+/// screen, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerMiddle {
     /// Place of the middle.
@@ -54,25 +53,25 @@ impl TouchedLayers {
         layers.first().copied()
     }
 
-    /// The layers that are off from now on, by their index from the bottom.
+    /// Sets the layers that are off from now on, by their indices from the bottom.
     pub fn switch(&mut self, off: &[usize]) {
         if self.off != off {
             off.clone_into(&mut self.off);
         }
     }
 
-    /// The name of a layer in messages.
+    /// The title of a layer in messages.
     pub fn title(&self, index: usize) -> Option<&LayerTitle> {
         self.titles.get(index)
     }
 
-    /// The layers that were never touched, by their index from the bottom.
+    /// Indices from the bottom of the layers that were never touched.
     pub fn untouched(&self) -> impl Iterator<Item = usize> {
         self.touched.iter().enumerate().filter(|(_, touched)| !**touched).map(|(index, _)| index)
     }
 
-    /// The middle of a layer, or the place nearest to it where a finger touches the layer; `None` if no tried place is
-    /// inside the layer.
+    /// The middle of a layer, or the nearest place at which a finger touches it; `None` if no tried place is inside the
+    /// layer.
     pub fn middle(&self, index: usize) -> Option<LayerMiddle> {
         let [left_m, top_m, right_m, bottom_m] = self.reference.bounds_m(index)?;
         let (left_m, right_m) = (left_m.max(0.0), right_m.min(self.screen_m.0));
@@ -106,7 +105,7 @@ impl TouchedLayers {
     }
 }
 
-/// Distance of a place, given in parts of both sides, from the middle.
+/// Distance from the middle of a place given in fractions of both sides.
 fn off_middle((x, y): (f64, f64)) -> f64 {
     (x - 0.5).abs().max((y - 0.5).abs())
 }

@@ -1,4 +1,4 @@
-//! The limits of the drive, and what raising them would reach.
+//! The limits of the drive, and the effect of raising them.
 
 use frixel_layers::Header;
 use frixel_model::{Carrier, TouchBound};
@@ -12,15 +12,15 @@ use super::reach::Reach;
 use super::springs::Springs;
 use super::warning::Warning;
 
-/// Ratio of the default peak limit to the peak that the rms limit needs. It is above 1, so that rounding never makes
-/// the peak limit the tighter one.
+/// Ratio of the default peak limit to the peak needed by the rms limit. It is above 1, so that rounding never makes the
+/// peak limit the tighter one.
 const PEAK_MARGIN: f64 = 1.001;
 
-/// The peak voltage that a board allows at a carrier, in V, and why, if that is less than at other carriers.
+/// The peak voltage that a board allows at a carrier, in V, and the reason if the carrier lowers it.
 fn board_v_peak(limits: &BoardLimits, carrier: &Carrier) -> (f64, &'static str) {
     let whole_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
     let touch_bound = TouchBound::behind(limits.series_resistance_ohm);
-    // Rounded down, so that the board finds no more in its own arithmetic.
+    // Rounded down, so that the board's own arithmetic finds no excess.
     let touch_v_peak = (10.0 * f64::from(touch_bound.voltage_max_v_peak(carrier.carrier_hz()))).floor() / 10.0;
     if touch_v_peak < whole_v_peak {
         (touch_v_peak, " at this carrier, which lets at most 0.7 mA through a bridged or thin coating")
@@ -29,14 +29,14 @@ fn board_v_peak(limits: &BoardLimits, carrier: &Carrier) -> (f64, &'static str) 
     }
 }
 
-/// The limits of the drive: the least of those of scene, screen and board.
+/// The limits of the drive: the lowest of scene, screen and board.
 pub(super) struct Voltage {
     pub(super) max_v_rms: f64,
     pub(super) max_v_peak: f64,
     pub(super) slew_v_per_us: f64,
-    /// Peak voltage over rms voltage of the carrier.
+    /// Crest factor of the carrier.
     peak_per_rms: f64,
-    /// The largest rms voltage within the limits that [drive] cannot change: those of screen, board and measurement.
+    /// The largest rms voltage within limits that [drive] cannot change: those of screen, board and measurement.
     hard_max_v_rms: f64,
     /// The largest peak voltage of screen and board.
     hard_max_v_peak: f64,
@@ -67,7 +67,7 @@ impl Voltage {
         let max_v_rms = scene_max_v_rms.min(max_v_peak / peak_per_rms);
         if max_v_rms < scene_max_v_rms {
             let why = if max_v_peak >= board_v_peak { why } else { "" };
-            // A scene that has no peak voltage reads as if its rms voltage were driven: that it is not is a warning.
+            // Without a peak voltage in the scene, its rms voltage seems to be driven; warn if it is not.
             if drive.voltage_max_v_peak.is_none() && drive.places.has("voltage_max_v_rms") {
                 let whose = if max_v_peak >= board_v_peak { "board" } else { "screen" };
                 log.warn(
@@ -105,7 +105,8 @@ impl Voltage {
         Self { max_v_rms, max_v_peak, slew_v_per_us, peak_per_rms, hard_max_v_rms, hard_max_v_peak }
     }
 
-    /// Ends the drive where an empirical law ends, which is never extrapolated. A scene that asks for more is refused.
+    /// Limits the drive to the range of an empirical law, which is never extrapolated. A scene that asks for more is
+    /// refused.
     pub(super) fn end_with_law(&mut self, scene: &Scene, log: &mut Log) {
         let Elasticity::Empirical(law) = &scene.finger().elasticity else { return };
         let measured_v_rms = law.voltage_max_v_rms();
@@ -124,8 +125,8 @@ impl Voltage {
         }
     }
 
-    /// Checks the current into the worst-case electrode at the largest voltage against the board's limits, and lowers
-    /// the voltage to them.
+    /// Checks the current into the worst-case electrode at the largest voltage, and lowers the voltage to the board's
+    /// current limits.
     pub(super) fn limit_current(&mut self, scene: &Scene, limits: &BoardLimits, carrier: &Carrier, log: &mut Log) {
         let drive_v_peak = self.max_v_rms as f32 * carrier.peak_per_rms();
         let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
@@ -146,12 +147,12 @@ impl Voltage {
         self.max_v_rms *= factor.min(1.0);
     }
 
-    /// The limits of [drive], with the least whole volts that reach an electric friction; empty if other limits forbid
-    /// that. `header` is that of the compiled scene.
+    /// The limits of [drive] to raise, with the smallest whole volts that reach an electric friction; empty if other
+    /// limits prevent it. `header` is that of the compiled scene.
     pub(super) fn raised_for(&self, scene: &Scene, header: &Header, friction_n: f64) -> Vec<(&'static str, f64)> {
         let reaches = |v_rms: f64| {
             let gap_m = f64::from(header.effective_gap_m);
-            // Other springs stand in for a soft finger at another voltage.
+            // A soft finger has other springs at another voltage.
             let springs =
                 Springs::of(scene.finger(), gap_m, v_rms).ok().filter(|springs| springs.mistake().is_none())?;
             let stiffness_pa_per_m = springs.stiffness_pa_per_m as f32;

@@ -1,5 +1,5 @@
-//! Warnings: a program that can be played, but that asks for what the model or the finger's profile does not cover, or
-//! that is probably not what its author means.
+//! Warnings: the program can be played, but exceeds the validity of the model or the finger's profile, or is probably
+//! not what its author intended.
 
 use frixel_layers::{Blend, Interval};
 use serde::Serialize;
@@ -21,8 +21,8 @@ use super::titles::{LayerTitle, listed};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Warning {
-    /// The scene asks for more electric friction than the finger has natural friction. The law was compared with
-    /// measurements below that, where the exponent of the voltage is near 2.
+    /// The electric friction exceeds the finger's natural friction. The law was compared with measurements only below
+    /// that, where the exponent of the voltage is near 2.
     #[error(
         "the scene asks for up to {electric_friction_n} N of electric friction, more than the finger's natural friction of \
          {natural_friction_n} N: the model is not confirmed there"
@@ -33,7 +33,7 @@ pub enum Warning {
         /// Friction at no voltage, N.
         natural_friction_n: f64,
     },
-    /// The scene needs a larger voltage than the finger was measured at.
+    /// The scene needs a larger voltage than the measurement of the finger covers.
     #[error(
         "the scene needs up to {voltage_v_rms} V rms, and its finger was measured up to {measured_v_rms} V rms: lower \
          `voltage_max_v_rms`, or measure the finger again"
@@ -44,9 +44,9 @@ pub enum Warning {
         /// Largest voltage of the measurement, V rms.
         measured_v_rms: f64,
     },
-    /// The finger's load lies outside of the loads of the measurement.
+    /// The finger's load is outside the measured range.
     #[error(
-        "the finger's load of {normal_load_n} N lies outside of the {least_n} N to {largest_n} N that it was measured at: \
+        "the finger's load of {normal_load_n} N is outside its measured range, {least_n} N to {largest_n} N: \
          change `normal_load_n`, or measure the finger again"
     )]
     BeyondMeasuredLoad {
@@ -57,21 +57,21 @@ pub enum Warning {
         /// Largest load of the measurement, N.
         largest_n: f64,
     },
-    /// The scene names a larger rms voltage than the peak limit of board or screen lets through.
+    /// The rms voltage exceeds what the peak limit of the board or screen allows.
     #[error(
-        "`voltage_max_v_rms = {found}` is more than the {whose} lets through: {max_v_rms:.1} V rms are driven at most, \
+        "`voltage_max_v_rms = {found}` exceeds what the {whose} allows: at most {max_v_rms:.1} V rms are driven, \
          by its limit of {max_v_peak} V peak{why} and a peak of {peak_per_rms:.3} times the rms"
     )]
     RmsOutOfReach {
         /// The rms voltage of the scene and its screen, V.
         found: f64,
-        /// Whose limit it is: `board` or `screen`.
+        /// Owner of the limit: `board` or `screen`.
         whose: &'static str,
         /// The limit, V peak.
         max_v_peak: f64,
-        /// Where the limit is from, if from the carrier; otherwise empty.
+        /// Origin of the limit if it is the carrier; otherwise empty.
         why: &'static str,
-        /// Peak voltage over rms voltage of the carrier.
+        /// Crest factor of the carrier: peak voltage over rms voltage.
         peak_per_rms: f64,
         /// The rms voltage that remains, V.
         max_v_rms: f64,
@@ -91,7 +91,7 @@ pub enum Warning {
     },
     /// A picture is stretched along one side.
     #[error(
-        "{layer}: the picture is stretched by {percent} % in {direction}: to keep its sides, {}",
+        "{layer}: the picture is stretched by {percent} % in {direction}: to keep its proportions, {}",
         if *.has_own_height {
             "leave the layer's `height_mm` out".to_owned()
         } else {
@@ -104,36 +104,36 @@ pub enum Warning {
     PictureStretched {
         /// The layer.
         layer: String,
-        /// How much longer its side is than its other side demands, in percent.
+        /// Excess of this side over the picture's proportions, in percent.
         percent: f64,
         /// `width` or `height`.
         direction: &'static str,
         /// Whether the layer itself has a `height_mm`.
         has_own_height: bool,
-        /// The height that its width demands, mm.
+        /// The height that preserves the proportions, mm.
         height_mm: f64,
     },
-    /// A picture is of one grey over what shows through it.
+    /// Transparent and opaque parts of a picture have the same grey.
     #[error(
-        "{layer}: the picture is of one grey where it is transparent and where it is not, so that nobody feels its shape: \
+        "{layer}: its transparent and opaque parts have the same grey, so its shape cannot be felt: \
          write {cure}"
     )]
     PictureHidden {
         /// The layer.
         layer: String,
-        /// What to write.
+        /// The fix.
         cure: &'static str,
     },
     /// The line of an edge without a region crosses a scene of layers with regions.
-    #[error("{layer} has no `region`, so that its line crosses the whole screen: give it one to end the line there")]
+    #[error("{layer} has no `region`, so its line crosses the whole screen: add one to end the line there")]
     EdgeAcrossScreen {
         /// The layer.
         layer: String,
     },
     /// The line of an edge does not cross its region.
     #[error(
-        "{layer}: its line lies {distance_mm} mm outside of its `region`, so that nobody crosses it: move `x_mm` and `y_mm`, \
-         which are a place on the screen, or the region"
+        "{layer}: its line lies {distance_mm} mm outside its `region` and is never crossed: move `x_mm` and `y_mm`, \
+         which are screen coordinates, or the region"
     )]
     EdgeOutsideRegion {
         /// The layer.
@@ -143,7 +143,7 @@ pub enum Warning {
     },
     /// A layer without a region hides layers below it everywhere.
     #[error(
-        "{layer} has no `region`, so that it replaces {hidden} on the whole screen{}: give it a `region`, or a `blend` such \
+        "{layer} has no `region`, so it replaces {hidden} on the whole screen{}: give it a `region`, or a `blend` such \
          as \"add\"", if *.is_live { " while it is on" } else { "" }
     )]
     HidesAllBelow {
@@ -151,13 +151,13 @@ pub enum Warning {
         layer: String,
         /// Whether the host switches the layer.
         is_live: bool,
-        /// The layers that are not felt anywhere.
+        /// The hidden layers.
         hidden: String,
     },
     /// Two layers of one file have the same name.
     #[error(
-        "{layer} has the name of layer {lower}, which is the one that `--control` changes by this name: give it \
-         another name, or call it {number}"
+        "{layer} has the same name as layer {lower}, which is the one that `--control` changes: rename it, \
+         or refer to it as {number}"
     )]
     NameTwice {
         /// The upper layer.
@@ -169,11 +169,11 @@ pub enum Warning {
     },
 }
 
-/// A picture that is stretched by more than this is warned of.
+/// Stretch factor above which a warning is issued.
 const STRETCH_MAX: f64 = 1.05;
 
 impl Warning {
-    /// The warning of a button whose two rims meet, if they do.
+    /// Returns a warning if the rims of a button leave no face.
     pub(super) fn of_rim(layer: &str, rim_width_mm: f64, side_mm: f64) -> Option<Self> {
         (2.0 * rim_width_mm >= side_mm).then(|| Self::RimWiderThanButton {
             layer: layer.to_owned(),
@@ -182,8 +182,8 @@ impl Warning {
         })
     }
 
-    /// The warning of a picture that is higher for its width by this factor than its pixels are, if that is much.
-    /// `height_mm` is the height that its width demands.
+    /// Returns a warning if a picture is stretched. `height_factor` is its height over the height that preserves the
+    /// proportions, `height_mm` the latter.
     pub(super) fn of_stretch(layer: &str, height_factor: f64, height_mm: f64, has_own_height: bool) -> Option<Self> {
         let (factor, direction) =
             if height_factor > 1.0 { (height_factor, "height") } else { (1.0 / height_factor, "width") };
@@ -197,19 +197,19 @@ impl Warning {
         })
     }
 
-    /// The warning of an edge whose line lies so far outside of its region, if it does.
+    /// Returns a warning if the line of an edge lies far outside its region.
     pub(super) fn of_line(layer: &str, distance_mm: f64) -> Option<Self> {
         let distance_mm = digits(distance_mm, f64::round);
         (distance_mm > 0.0).then(|| Self::EdgeOutsideRegion { layer: layer.to_owned(), distance_mm })
     }
 
-    /// Whether a board with an electrode refuses the program: it extrapolates from a measurement.
+    /// Whether a real board refuses the program because it extrapolates a measurement.
     pub fn is_refused_by_boards(&self) -> bool {
         matches!(self, Self::BeyondMeasuredVoltage { .. } | Self::BeyondMeasuredLoad { .. })
     }
 }
 
-/// The warnings of layers that their author probably means otherwise.
+/// Returns the warnings of layers that probably differ from their author's intention.
 pub(super) fn of_layers(layers: &[Layer]) -> Vec<(&Layer, Warning)> {
     let edges = layers.iter().enumerate().filter_map(|(number, layer)| {
         let has_no_end = matches!(layer.kind, Kind::Edge(_)) && layer.region.is_none() && !layer.is_copy;
@@ -219,8 +219,8 @@ pub(super) fn of_layers(layers: &[Layer]) -> Vec<(&Layer, Warning)> {
     edges.chain(hiding(layers)).chain(same_names(layers)).collect()
 }
 
-/// The warnings of the topmost layer that hides all layers below it for good, and of the topmost one above it that
-/// hides them while it is on. Whole screens that the host switches are meant to hide one another.
+/// Returns the warning of the topmost layer that hides all layers below it permanently, and of the topmost one above it
+/// that hides them while it is on. Switchable layers of full-screen size are expected to hide one another.
 fn hiding(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let hides = |layer: &Layer| {
         let is_everywhere = layer.region.is_none() && layer.kind.fills_screen();
@@ -239,7 +239,7 @@ fn hiding(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     })
 }
 
-/// The warnings of layers that have the name of a lower one. Of the copies of a layer, the first one is warned of.
+/// Returns the warnings of layers that share the name of a lower layer. Of copies, only the first is included.
 fn same_names(layers: &[Layer]) -> impl Iterator<Item = (&Layer, Warning)> {
     let twin = |number: usize, layer: &Layer| {
         let below = layers.iter().take(number).filter(|other| other.name.is_some() && other.name == layer.name);
@@ -270,7 +270,7 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
     else {
         return warnings;
     };
-    // The law is one: the reach was computed from it.
+    // The law is valid: the reach was computed from it.
     if let Ok(law) = program.header.friction_law() {
         let measured_n = (1.0 + ROUNDING) * law.electric_friction_n(voltage_max_v_rms);
         if let Some(needed_n) = demand_above(program, measured_n) {
@@ -285,8 +285,8 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
     warnings
 }
 
-/// The largest electric friction that the scene asks for anywhere and the drive reaches, if it is above a limit. A host
-/// that changes layers can ask for all that the drive reaches.
+/// The largest electric friction that the scene asks for and the drive reaches, if it exceeds `limit_n`. A host that
+/// changes layers can ask for the full reach.
 fn demand_above(program: &Program, limit_n: f64) -> Option<f64> {
     let Program { header, reach: Reach { electric_friction_max_n, .. }, .. } = program;
     let largest_n = if header.layers_fixed {

@@ -223,7 +223,7 @@ test("a voltage that the board does not let through is a warning at its line, co
   const page = await openScene(text);
   const warning = page.locator("#problems li.warning");
   await warning.waitFor();
-  assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` is more than the board lets through/);
+  assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` exceeds what the board allows/);
   assert.match(await warning.innerText(), /211\.0 V rms .* limit of 220 V peak and a peak of 1\.043 times the rms/);
   await page.click("#toggle-drawer");
   const count = page.locator("#mistakes");

@@ -11,7 +11,7 @@ pub(crate) struct Cell {
     pub(crate) bottom_m: f64,
 }
 
-/// How much of a cell a layer covers.
+/// Coverage of a cell by a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coverage {
     None,
@@ -29,7 +29,7 @@ impl Cell {
         (f64::midpoint(self.left_m, self.right_m), f64::midpoint(self.top_m, self.bottom_m))
     }
 
-    /// The place of the cell that is nearest to another place.
+    /// The point of the cell nearest to a place.
     pub(crate) fn nearest_to(self, x_m: f64, y_m: f64) -> (f64, f64) {
         (x_m.clamp(self.left_m, self.right_m), y_m.clamp(self.top_m, self.bottom_m))
     }

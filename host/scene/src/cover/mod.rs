@@ -1,10 +1,10 @@
 //! Finds where layers overlap, and the range of their target friction there.
 //!
-//! The edges of all layers cut the screen into cells. Within a cell, the same rectangles apply everywhere. Each layer's
-//! extremes in a cell follow from the bounds of its kind in `frixel-layers`, which the reference narrows to the cell
-//! where it has a closed form. Blended, they bound the friction of the stack. If a single layer varies, the bound is
-//! reached. For several varying layers, and for a layer whose outline crosses the cell, it need not be: such a cell is
-//! searched for a place that is out of reach.
+//! The edges of all layers cut the screen into cells, within which the same rectangles apply everywhere. Each layer's
+//! extremes in a cell follow from the bounds of its kind in `frixel-layers`, narrowed to the cell where the reference
+//! has a closed form. Blending them bounds the friction of the stack. The bound is reached if a single layer varies. It
+//! may not be reached if several layers vary, or if a layer's outline crosses the cell; such a cell is searched for a
+//! place out of reach.
 
 mod cell;
 
@@ -20,23 +20,23 @@ use crate::reference::{Context, Piece};
 
 /// Width below which a cell is a rounding artefact, m.
 const CELL_MIN_M: f64 = 1e-6;
-/// Most places that are evaluated along each side of a cell.
+/// Largest number of places evaluated along each side of a cell.
 const PLACES_PER_SIDE_MAX: f64 = 256.0;
-/// Places that are evaluated along each side of a cell that an outline crosses.
+/// Number of places evaluated along each side of a cell that an outline crosses.
 const PLACES_PER_OUTLINE: f64 = 64.0;
-/// Most places that are evaluated in a scene that is compiled.
+/// Largest number of places evaluated when a scene is compiled.
 pub(super) const PLACES_MAX: usize = 1_000_000;
 
 /// Bare glass.
 const ZERO: Interval<f64> = Interval { low: 0.0, high: 0.0 };
 
-/// Layers whose friction is out of reach in a cell, or may be out of reach.
+/// Layers whose friction is, or may be, out of reach in a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Excess {
-    /// Numbers of the layers that apply there, from zero, from bottom to top.
+    /// Indices of the layers that apply there, from bottom to top.
     pub(super) layers: Vec<usize>,
     pub(super) cell: Cell,
-    /// Range of the friction that the search found in the cell.
+    /// Range of the friction found by searching the cell.
     pub(super) found: Interval<f64>,
     /// Bound on the friction in the cell.
     pub(super) bound: Interval<f64>,
@@ -44,12 +44,11 @@ pub(super) struct Excess {
 
 /// The layers that apply in a cell.
 struct Stack {
-    /// Numbers of the layers, starting with the last one that replaces all below it.
+    /// Indices of the layers, starting with the last one that replaces all below it.
     layers: Vec<usize>,
     bound: Interval<f64>,
-    /// What keeps the bound from being reached: 1 for each layer that is not the same everywhere, 2 if its extremes are
-    /// only bounded, and 1 for its outline in the cell. With up to 1, the bound is reached; with more, the cell is
-    /// searched.
+    /// Reasons why the bound may not be reached: 1 for each layer that varies, 2 if its extremes are only bounded, plus
+    /// 1 if its outline crosses the cell. Up to 1, the bound is reached; above, the cell is searched.
     doubts: usize,
     outlined: bool,
 }
@@ -58,13 +57,12 @@ struct Stack {
 struct Suspect {
     cell: Cell,
     stack: Stack,
-    /// Places to evaluate across and down; `None` if the bound counts as reached.
+    /// Places to evaluate across and down; `None` if the bound is treated as reached.
     grid: Option<(f64, f64)>,
 }
 
-/// All sets of layers that exceed `reach`, or may exceed it, somewhere on the screen of a scene, each with the cell
-/// where it does so most. At about `places_max` places at most are evaluated: a scene that has more is searched with
-/// coarser steps.
+/// Returns all sets of layers that exceed, or may exceed, `reach` on a scene's screen, each with the cell of its
+/// largest excess. Evaluates about `places_max` places at most, in coarser steps if a scene has more.
 pub(super) fn excesses(header: &Header, pieces: &[Piece], reach: Interval<f64>, places_max: usize) -> Vec<Excess> {
     let extent = |excess: &Excess| (beyond(excess.found, reach), beyond(excess.bound, reach));
     let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
@@ -76,7 +74,7 @@ pub(super) fn excesses(header: &Header, pieces: &[Piece], reach: Interval<f64>, 
     worst.into_values().collect()
 }
 
-/// An interval, widened to all friction that layers ask for anywhere on the screen of a scene.
+/// An interval, widened to the friction that layers ask for anywhere on a scene's screen.
 pub(super) fn widened(interval: Interval<f64>, header: &Header, pieces: &[Piece], places_max: usize) -> Interval<f64> {
     let excesses = excesses_of_cells(header, pieces, interval, places_max);
     excesses.iter().fold(interval, |range, excess| range.hull(excess.found))
@@ -109,7 +107,7 @@ fn excesses_of_cells(header: &Header, pieces: &[Piece], reach: Interval<f64>, pl
     searched.collect()
 }
 
-/// The edges of layers within the screen, and those of the screen, sorted.
+/// The sorted edges of the screen, and of the layers within it.
 fn edges(screen_m: f64, layers: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut edges: Vec<f64> = layers.filter(|edge| *edge > 0.0 && *edge < screen_m).collect();
     edges.extend([0.0, screen_m]);
@@ -143,7 +141,7 @@ impl Stack {
     }
 }
 
-/// Places to evaluate across and down a cell, so that no detail of its layers is missed.
+/// Number of places to evaluate across and down a cell without missing a detail of its layers.
 fn grid(pieces: &[Piece], stack: &Stack, cell: Cell) -> (f64, f64) {
     let layers = stack.layers.iter().filter_map(|layer| pieces.get(*layer));
     let detail_m = layers.filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
@@ -152,7 +150,7 @@ fn grid(pieces: &[Piece], stack: &Stack, cell: Cell) -> (f64, f64) {
     (places(cell.right_m - cell.left_m), places(cell.bottom_m - cell.top_m))
 }
 
-/// Range of the friction at so many places across and down a cell.
+/// Range of the friction on a grid of places in a cell.
 fn search(pieces: &[Piece], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interval<f64> {
     let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
     let [across, down] = grid.map(|places| places.round().max(1.0) as usize);
@@ -167,14 +165,14 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interv
     intervals.reduce(Interval::hull).unwrap_or(ZERO)
 }
 
-/// The range of the layers' combined target friction at a place, at any time and speed.
+/// Range of the layers' combined target friction at a place, over all times and speeds.
 pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Interval<f64> {
     let covering = layers.filter(|piece| piece.shape.covers(x_m, y_m));
     covering.fold(ZERO, |below, piece| piece.over(below, piece.interval_at(x_m, y_m), true))
 }
 
 impl Piece {
-    /// The interval of the layer's friction at a place, at any time and speed, and with its click.
+    /// Range of the layer's friction at a place, over all times and speeds, click included.
     fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
         if !self.field.is_still() {
             return self.bounds;
@@ -183,20 +181,20 @@ impl Piece {
         Interval::of([still_n]).plus(click_interval(self.field.click()))
     }
 
-    /// The extremes of the layer's friction in a cell, at any time and speed, and with its click.
+    /// Extremes of the layer's friction in a cell, over all times and speeds, click included.
     pub(crate) fn extremes_in(&self, cell: Cell) -> Extremes {
         if self.field.is_still() { self.field.extremes_in(cell, self.bounds) } else { Extremes::Reached(self.bounds) }
     }
 
-    /// The interval after the layer is blended over those below it. `own` is its friction before its gain. A stream may
-    /// be absent.
+    /// Blends the layer over the interval of the layers below. `own` is its friction before its gain. A stream may be
+    /// absent.
     fn over(&self, below: Interval<f64>, own: Interval<f64>, covers_all: bool) -> Interval<f64> {
         let own = own.times(Interval::of([self.gain]));
         self.blend.of_intervals(below, own, covers_all && !self.is_streamed)
     }
 }
 
-/// How far an interval exceeds the reach; zero within it.
+/// Excess of an interval over the reach; zero within it.
 pub(super) fn beyond(interval: Interval<f64>, reach: Interval<f64>) -> f64 {
     (reach.low - interval.low).max(interval.high - reach.high).max(0.0)
 }

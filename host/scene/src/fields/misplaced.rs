@@ -1,4 +1,4 @@
-//! Finds what was written in the wrong place: fields that belong to another table, and headers in the wrong brackets.
+//! Finds fields that belong to another table, and headers in the wrong brackets.
 
 use std::sync::LazyLock;
 
@@ -36,7 +36,7 @@ struct Home {
     fields: Vec<&'static str>,
 }
 
-/// A screen has a name, but who gives one to a scene does not mean the screen.
+/// The name of a screen. In a scene, `name` is unlikely to mean the screen's.
 const NAME: &str = "name";
 /// A scene with every table of the head, and one with the tables inside a layer.
 const TABLES: &str = "version = 1\n[drive]\n[screen]\n[finger]\n[carrier]\n[touch]\n[design]\n\
@@ -56,7 +56,7 @@ static HOMES: LazyLock<Vec<Home>> = LazyLock::new(|| {
     KEYS.into_iter().map(|key| Home { key, fields: fields(key) }).collect()
 });
 
-/// The name that a field has in a table, which a person may leave the unit of.
+/// The name of a field in a table; its unit may be omitted.
 fn name_in(home: &Home, field: &str) -> Option<&'static str> {
     let is_named = |name: &&&'static str| **name == field || name.strip_suffix("_mm") == Some(field);
     home.fields.iter().find(is_named).copied()
@@ -72,7 +72,7 @@ pub(super) fn report(
     log: &mut Log,
 ) -> Misplaced {
     let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
-    // The known fields are themselves found by reading tables.
+    // The known fields themselves result from reading tables.
     if unknown.is_empty() || log.is_describing() {
         return misplaced;
     }

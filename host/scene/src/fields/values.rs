@@ -11,7 +11,7 @@ use crate::mistake::FieldMistake;
 use crate::nearest::Nearest;
 use crate::printable::{NAME_MAX_CHARS, is_printable};
 
-/// The field of a name, which may have only so many characters.
+/// The name field, which has a length limit.
 const NAME: &str = "name";
 
 /// A table, or the name of a file that contains it.
@@ -38,7 +38,7 @@ impl<'i> Fields<'i> {
         self.number(log, field).unwrap_or(field.default_number())
     }
 
-    /// An angle, in degrees, without its whole turns if it is more than one, or its default if it is absent or invalid.
+    /// An angle in degrees, reduced to one turn; the default if the field is absent or invalid.
     pub(crate) fn angle_deg(&mut self, log: &mut Log, field: &FieldSpec) -> f64 {
         let found_deg = self.number_or_default(log, field);
         if found_deg.abs() > 360.0 { found_deg % 360.0 } else { found_deg }
@@ -94,7 +94,7 @@ impl<'i> Fields<'i> {
         })
     }
 
-    /// Two fields that say the same in two units, either of which is enough. A file that has both has a mistake.
+    /// Two fields for one quantity in two units. Either is enough; both are a mistake.
     pub(crate) fn in_either_unit(&mut self, log: &mut Log, one: &FieldSpec, other: &FieldSpec) -> [FieldSpec; 2] {
         self.either(one, other);
         let has_other = self.has(other.name);
@@ -104,11 +104,11 @@ impl<'i> Fields<'i> {
         if one.absence == Absence::Mistake && !has_other {
             self.require(one);
         }
-        // Either of the two fields is enough, so neither is required by itself.
+        // Either of the two fields is enough, so neither is required alone.
         [one, other].map(|field| FieldSpec { absence: Absence::Means(""), ..*field })
     }
 
-    /// Pixels along an axis in millimetres, which have to be in a range.
+    /// Converts pixels along an axis to millimetres, and checks the range.
     fn pixels_in_mm(
         &self,
         log: &mut Log,
@@ -143,13 +143,13 @@ impl<'i> Fields<'i> {
         default
     }
 
-    /// A text that names something, so that it may stand in a message as it is: all of it is seen.
+    /// A text for use in messages: all its characters are visible.
     pub(crate) fn text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<String> {
         let value = self.take(field)?;
         Self::text_of(log, field.name, &value)
     }
 
-    /// A text for a reader, of any characters.
+    /// A text of any characters.
     pub(crate) fn free_text(&mut self, log: &mut Log, field: &FieldSpec) -> Option<String> {
         let value = self.take(field)?;
         if let DeValue::String(text) = value.get_ref() {
@@ -356,7 +356,7 @@ impl<'i> Fields<'i> {
 fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeValue>) -> Option<f64> {
     let offset = value.span().start;
     let found = match value.get_ref() {
-        // One of more digits than an i64 has is out of every range.
+        // A number with more digits than an i64 is out of every range.
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
         DeValue::Integer(integer) => {
             let whole = i64::from_str_radix(integer.as_str(), integer.radix());
@@ -391,7 +391,7 @@ fn type_of(value: &DeValue) -> &'static str {
     }
 }
 
-/// The mistake of a value in place of a table, with the table that it may stand for.
+/// The mistake of a value in place of a table, with the table that was probably meant.
 fn not_a_table(field: &'static str, found: &DeValue) -> FieldMistake {
     let write = match field {
         "region" => {

@@ -1,6 +1,6 @@
-//! Finger profiles: the numbers of a finger on a screen, and how they came about.
+//! Finger profiles: the parameters of a finger on a screen, and their evidence.
 //!
-//! A profile is a TOML file of its own, or the table `[finger]` of a scene; both have the same fields.
+//! A profile is a TOML file of its own, or the table `[finger]` of a scene. Both have the same fields.
 
 mod bundled;
 mod read;
@@ -15,7 +15,7 @@ use super::fields::read_text;
 
 pub(super) use read::read;
 
-/// The numbers of a finger on a screen.
+/// The parameters of a finger on a screen.
 ///
 /// ```
 /// use frixel_scene::{Evidence, FingerProfile};
@@ -30,21 +30,21 @@ pub struct FingerProfile {
     pub friction_coefficient: f64,
     /// Normal load for which scenes are compiled, 0 to 50 N.
     pub normal_load_n: f64,
-    /// Radius of curvature at the contact, 0.1 to 100 mm; 0 for an empirical law, which has none.
+    /// Radius of curvature at the contact, 0.1 to 100 mm; 0 for an empirical law.
     pub radius_mm: f64,
-    /// How the finger gives way under a load.
+    /// Elastic response to a load.
     pub elasticity: Elasticity,
     /// Stratum corneum and air between coating and living tissue, as an effective gap (thickness over permittivity), 0
-    /// to 10,000 um. It is added to that of the screen's coating. 0 for an empirical law.
+    /// to 10,000 um. It is added to the gap of the screen's coating. 0 for an empirical law.
     pub skin_gap_um: f64,
-    /// How the numbers came about.
+    /// Evidence for the parameters.
     pub evidence: Evidence,
 }
 
-/// How a finger gives way under a load.
+/// Elastic response of a finger to a load.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elasticity {
-    /// Springs of one stiffness, Eq. (10).
+    /// Linear springs, Eq. (10).
     WinklerFuss {
         /// Stiffness `k`, 1e3 to 1e14 Pa/m.
         stiffness_pa_per_m: f64,
@@ -58,29 +58,29 @@ pub enum Elasticity {
         /// Dimensionless constant `B` of Eq. (24), 0.001 to 1000.
         shape_constant: f64,
     },
-    /// None is known: the electric friction was measured as a function of the voltage, on one screen, under one load.
-    /// The profile's evidence is [`Evidence::Empirical`].
+    /// Unknown: electric friction was measured as a function of the voltage, on one screen, under one load. The
+    /// profile's evidence is [`Evidence::Empirical`].
     Empirical(MeasuredLaw),
 }
 
-/// Electric friction as a function of the voltage, as it was measured.
+/// Measured electric friction as a function of the voltage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredLaw {
     /// Power of the voltage with which friction grows below the first point, 0.5 to 12.
     pub exponent: f64,
-    /// 1 to 16 points: rms voltage in volts, electric friction in newtons. Both rise.
+    /// 1 to 16 points: rms voltage in volts and electric friction in newtons, both ascending.
     pub points: Vec<(f64, f64)>,
     /// 95 % interval of the friction of each point, in newtons.
     pub intervals_n: Vec<(f64, f64)>,
 }
 
 impl MeasuredLaw {
-    /// Largest rms voltage of the measurement, in volts. The law ends there.
+    /// Largest rms voltage of the measurement, in volts, at which the law ends.
     pub fn voltage_max_v_rms(&self) -> f64 {
         self.points.last().map_or(0.0, |(voltage_v_rms, _)| *voltage_v_rms)
     }
 
-    /// The law as a scene carries it, in `f32`; `None` if it has no point, or too many.
+    /// The law in `f32`, as in a compiled scene; `None` if it has no points, or too many.
     pub(crate) fn of_scene(&self) -> Option<FingerLaw> {
         let points: Vec<LawPoint> = self
             .points
@@ -94,12 +94,12 @@ impl MeasuredLaw {
     }
 }
 
-/// What a profile rests on. Friction that is computed from it is called *assumed* unless it was measured.
+/// Evidence for a profile. Friction computed from it is called *assumed* unless it was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Evidence {
-    /// The numbers are plausible, and nobody measured them.
+    /// Plausible values without a measurement.
     Assumed,
-    /// A person said what they felt: a level relative to that person's threshold is known, but no force.
+    /// A person reported what they felt: a level relative to their threshold is known, but no force.
     Perceptual {
         /// Where, when and how.
         experiment: Experiment,
@@ -121,8 +121,7 @@ pub enum Evidence {
         /// Least and largest normal load of the measurement, in newtons.
         normal_load_range_n: [f64; 2],
     },
-    /// A force sensor measured friction, and the contact model does not describe it: the profile has a
-    /// [`MeasuredLaw`].
+    /// A force sensor measured friction that the contact model does not describe: the profile has a [`MeasuredLaw`].
     Empirical {
         /// Where, when and how.
         experiment: Experiment,
@@ -134,27 +133,27 @@ pub enum Evidence {
 pub struct Experiment {
     /// Day, `YYYY-MM-DD`.
     pub date: String,
-    /// Method, in a few words for a person.
+    /// Method, in a few words.
     pub method: String,
-    /// Name of the screen: on another one, the profile counts as assumed.
+    /// Name of the screen. On another screen, the profile counts as assumed.
     pub screen: String,
 }
 
-/// What a profile rests on, without the numbers.
+/// Kind of evidence for a profile, without its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Nobody measured it.
+    /// Not measured.
     Assumed,
-    /// A person said what they felt.
+    /// A person reported what they felt.
     Perceptual,
     /// A force sensor measured it.
     Measured,
-    /// A force sensor measured it, and the contact model does not describe it.
+    /// A force sensor measured friction that the contact model does not describe.
     Empirical,
 }
 
 impl Origin {
-    /// Its word in a profile.
+    /// The value of `origin` in a profile.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Assumed => "assumed",
@@ -164,14 +163,14 @@ impl Origin {
         }
     }
 
-    /// [`Self::newtons_suffix`] of the origin of a word; that of an assumed one for other words.
+    /// [`Self::newtons_suffix`] for a value of `origin`; for other words, that of an assumed profile.
     pub fn newtons_suffix_of(word: &str) -> &'static str {
         let origins = [Self::Assumed, Self::Perceptual, Self::Measured, Self::Empirical];
         origins.into_iter().find(|origin| origin.word() == word).unwrap_or(Self::Assumed).newtons_suffix()
     }
 
-    /// What is put behind newtons, with a comma and a space before it; empty for a measured finger. What a person said
-    /// gives no newtons, so that those of a perceptual profile are assumed, too.
+    /// Suffix for values in newtons, with a leading comma and space; empty for a measured finger. A perceptual profile
+    /// gives no forces, so its newtons are assumed too.
     pub const fn newtons_suffix(self) -> &'static str {
         match self {
             Self::Assumed | Self::Perceptual => ", assumed",
@@ -230,7 +229,7 @@ impl FingerProfile {
         bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name).map(|(_, text)| *text)
     }
 
-    /// The finger that a scene gets when it does not say which.
+    /// The finger of a scene that names none.
     pub fn example() -> Self {
         bundled::EXAMPLE
     }

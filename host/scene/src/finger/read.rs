@@ -146,7 +146,7 @@ fn not_empty(fields: &mut Fields, field: &FieldSpec, log: &mut Log) -> Option<St
     Some(text)
 }
 
-/// Whether a text is a day of the calendar as `YYYY-MM-DD`. Every month may have 31 days.
+/// Whether a text is a date `YYYY-MM-DD`. Every month may have 31 days.
 fn is_date(text: &str) -> bool {
     let parts: Vec<&str> = text.split('-').collect();
     let [year, month, day] = parts.as_slice() else { return false };

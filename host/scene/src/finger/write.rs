@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{Elasticity, Evidence, Experiment, FingerProfile};
 use crate::tables::finger as table;
 
-/// The file of a profile, a field a line.
+/// The file of a profile, one field per line.
 pub(super) fn text(profile: &FingerProfile) -> String {
     let mut lines = Lines::default();
     let FingerProfile { friction_coefficient, normal_load_n, radius_mm, elasticity, skin_gap_um, evidence } = profile;

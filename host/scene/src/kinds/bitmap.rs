@@ -35,10 +35,10 @@ const HEIGHT: LengthFields = length!(
     "height",
     Y,
     SIZE_MM,
-    Means("as the picture's sides demand; the region's, when `width_mm` is the region's too"),
+    Means("the picture's proportions; the region's, if `width_mm` is the region's too"),
     "its height",
 );
-const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "how far it is turned about its middle");
+const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "rotation about its centre");
 const TILED: FieldSpec =
     flag("tiled", false, "`true`: it is repeated in both directions, over the region or the screen");
 /// Finest and coarsest pitch.
@@ -47,24 +47,25 @@ const PITCH: FieldSpec = FieldSpec::new(
     "pitch_mm",
     Holds::NumberOrAuto(PITCH_MM),
     Means("`\"auto\"`"),
-    "distance of the samples that the board plays; `\"auto\"`: the finest that fits, see below",
+    "spacing of the samples that the board plays; `\"auto\"`: the finest that fits, see below",
 );
 const LEVELS: FieldSpec = word(
     "levels",
     Means("`\"full\"`"),
-    "`\"full\"`: black and white are those of the file; `\"stretch\"`: the darkest and the lightest hundredth of the \
+    "`\"full\"`: the black and white of the file; `\"stretch\"`: the darkest and the lightest hundredth of the \
      picture become black and white",
 );
 const TRANSPARENT: FieldSpec = word(
     "transparent",
     Means("`\"black\"`"),
-    "`\"black\"` or `\"white\"`: what shows through where the picture is transparent",
+    "`\"black\"` or `\"white\"`: the ground behind transparent parts of the picture",
 );
 const INVERT: FieldSpec = flag("invert", false, "`true`: black and white are exchanged, also those of `transparent`");
 const BLACK: AmountFields = amount!("black", Means("0"), "friction of black");
-const WHITE: AmountFields = amount!("white", Means("all that can be reached; a factor of 1"), "friction of white");
+const WHITE: AmountFields =
+    amount!("white", Means("the largest friction in reach; a factor of 1"), "friction of white");
 
-/// What is black and white in a picture.
+/// The grey levels that become black and white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Levels {
     /// Black and white of the file.
@@ -115,8 +116,7 @@ impl Words for Bitmap {
         let is_inverted = fields.flag(log, &INVERT);
         let angle_deg = fields.angle_deg(log, &ANGLE);
         let tiled = fields.flag(log, &TILED);
-        // Default colours of a friction image without numbers: black is bare glass, white the most that the drive
-        // gives.
+        // Defaults of a picture without amounts: black is bare glass, white the largest reachable friction.
         let (black, white) = match unit {
             Unit::Friction => (Amount::Fraction(0.0), Amount::Fraction(1.0)),
             Unit::Factor => (Amount::Factor(0.0), Amount::Factor(1.0)),
@@ -188,7 +188,7 @@ impl Words for Bitmap {
     }
 }
 
-/// The reference of a bitmap layer; not-a-number everywhere if the program does not have the bitmap.
+/// Reference of a bitmap layer; NaN everywhere if the program lacks the bitmap.
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
         let bitmap = program.bitmap(self.crc32).filter(|bitmap| bitmap.width > 0 && bitmap.height > 0);
@@ -208,8 +208,8 @@ impl Field for Samples {
         self.at_place(context.x_m, context.y_m)
     }
 
-    /// A bilinear patch has its extremes at its corners: at the samples' centres, and where the cell cuts it. For a
-    /// turned picture, all samples within reach of the cell count.
+    /// Extremes of a bilinear patch lie at its corners: at sample centres, and at the cell's boundary. For a rotated
+    /// picture, all samples within reach of the cell count.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let positions = cell.corners().map(|(x_m, y_m)| self.position(x_m, y_m));
         let u = Interval::of(positions.iter().map(|(u, _)| *u));
@@ -234,7 +234,7 @@ impl Field for Samples {
     }
 }
 
-/// The samples around an interval of positions. A range of twice the number of samples covers every tiled position.
+/// Indices of the samples around an interval of positions. A range of twice the number of samples covers every tile.
 fn around(positions: Interval<f64>, samples: usize) -> RangeInclusive<i64> {
     let first = libm::floor(positions.low).max(-1e6) as i64;
     let last = libm::ceil(positions.high).min(1e6) as i64;

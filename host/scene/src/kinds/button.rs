@@ -29,10 +29,10 @@ const RIM_WIDTH: FieldSpec = number(
 const RIM: AmountFields = amount!(
     "rim",
     Mistake,
-    "friction in the middle of the rim, from where it falls off to that of the face on both sides as a raised cosine"
+    "friction in the middle of the rim; on both sides it falls off to the face's as a raised cosine"
 );
 const FACE: AmountFields = amount!("face", Mistake, "friction on the face");
-const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger slides in");
+const CLICK: AmountFields = amount!("click", Means("no click"), "pulse added when the finger slides in");
 
 /// `kind = "button"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +134,7 @@ impl Field for ButtonField {
         self.face_n + (self.rim_n - self.face_n) * height * height
     }
 
-    /// A cell that is the whole button has all of its rim, and its face.
+    /// A cell that is the whole button contains all of its rim, and its face.
     fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
         if cell == self.outline { Extremes::Reached(bounds) } else { Extremes::Bounded(bounds) }
     }

@@ -14,7 +14,7 @@ const CLICK_MS: FieldSpec = number(
     "click_ms",
     Range::new(0.1, range::CLICK_S.max / MM, " ms"),
     Number(20.0),
-    "how long a click takes to fall off: `(1 - t / click_ms)^2` of it are left after `t`",
+    "decay time of a click: `(1 - t / click_ms)^2` of it is left after `t`",
 );
 
 /// A short friction pulse when the finger crosses a line.
@@ -31,7 +31,7 @@ impl Click {
         Some(Self { height: Amount::read(fields, height, unit, log)?, decay_ms })
     }
 
-    /// Compiles a click. Its friction is relative to the friction that it is added to. `None` if there are too many.
+    /// Compiles a click, with friction relative to its base. Returns `None` if there are too many.
     pub(super) fn lower(click: Option<Self>, layer: &Layer, lowering: &mut Lowering) -> Option<Record> {
         let Some(Self { height, decay_ms }) = click else { return Some(Record::default()) };
         lowering.clicks += 1;

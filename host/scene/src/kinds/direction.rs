@@ -22,7 +22,7 @@ const ANGLE: FieldSpec =
 const ALONG: AmountFields = amount!("along", Mistake, "friction of a finger that slides along the axis");
 const AGAINST: AmountFields = amount!("against", Mistake, "friction of a finger that slides the other way");
 
-/// Below this speed friction fades to the mean of both, m/s.
+/// Speed below which friction fades to the mean of both directions, m/s.
 const FADE_M_PER_S: f64 = 0.02;
 
 /// `kind = "direction"`.

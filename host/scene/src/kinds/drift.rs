@@ -1,4 +1,4 @@
-//! The field of gratings and rings that move.
+//! The speed field of moving gratings and rings.
 
 use frixel_layers::range::DRIFT_HZ;
 
@@ -14,21 +14,21 @@ const DRIFT: FieldSpec = number(
     "drift_mm_per_s",
     Range::new(-1000.0, 1000.0, " mm/s"),
     Number(0.0),
-    "how fast they move: across the stripes, in the direction of `angle_deg`; rings outwards. Negative: the other way. A \
-     finger feels it while it slides",
+    "speed of the pattern: stripes move in the direction of `angle_deg`, rings outwards; negative: the other way. It \
+     is felt while the finger slides",
 );
 
-/// How fast stripes or rings move, mm/s; 0 if they do not.
+/// Reads the speed of stripes or rings, mm/s; 0 if they do not move.
 pub(super) fn read(fields: &mut Fields, log: &mut Log) -> f64 {
     fields.number_or_default(log, &DRIFT)
 }
 
-/// Waves that pass a place in a second, Hz.
+/// Waves per second that pass a place, Hz.
 pub(super) fn drift_hz(drift_mm_per_s: f64, wavelength_mm: f64) -> f64 {
     drift_mm_per_s / wavelength_mm
 }
 
-/// Finds a drift at which more waves pass than a board accepts.
+/// Reports a drift that exceeds the board's limit on waves per second.
 pub(super) fn check(drift_mm_per_s: f64, wavelength_mm: f64, places: &Places, log: &mut Log) {
     let max_hz = DRIFT_HZ.max;
     if drift_hz(drift_mm_per_s, wavelength_mm).abs() > max_hz {

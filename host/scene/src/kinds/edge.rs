@@ -29,10 +29,10 @@ const WIDTH: FieldSpec = number("width_mm", SIZE_MM, Mistake, "from one foot of 
 const RIDGE: AmountFields = amount!(
     "ridge",
     Mistake,
-    "friction on the line, falling off as a raised cosine; beside the ridge nothing is added, and what lies below is \
+    "friction on the line, falling off as a raised cosine; beside the ridge, 0 is added, or layers below are \
      multiplied by 1"
 );
-const CLICK: AmountFields = amount!("click", Means("no click"), "what is added when the finger crosses");
+const CLICK: AmountFields = amount!("click", Means("no click"), "pulse added when the finger crosses");
 
 /// `kind = "edge"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub(crate) struct Edge {
 
 impl Words for Edge {
     const WORD: &'static str = "edge";
-    /// By default an edge adds to the layers below: most edges are ridges.
+    /// By default an edge adds to the layers below, since most edges are ridges.
     const BLEND: Blend = Blend::Add;
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
@@ -100,7 +100,7 @@ impl Edge {
         let distances = corners
             .map(|(x_mm, y_mm)| (x_mm - self.x_mm) * libm::cos(angle_rad) + (y_mm - self.y_mm) * libm::sin(angle_rad));
         let Interval { low, high } = Interval::of(distances);
-        // Rounding errors may look like a distance.
+        // Ignore rounding errors.
         (low.max(-high) - 1e-6).max(0.0)
     }
 }

@@ -24,8 +24,8 @@ const PHASE: FieldSpec = number(
     "phase_deg",
     ANGLE_DEG,
     Number(0.0),
-    "at the screen's corner, without a phase, a sine is in its middle and rises, a square's high part begins, triangle \
-     and saw are low and rise. A phase is how much later in the wave it starts",
+    "position in the wave at the `origin`. At 0, a sine is at its middle and rises, a square's high part begins, \
+     and triangle and saw are low and rise",
 );
 
 const ORIGIN: FieldSpec = word(
@@ -35,7 +35,7 @@ const ORIGIN: FieldSpec = word(
      that the stripes move with it",
 );
 
-/// Where the phase counts from.
+/// Origin of the phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Origin {
     Screen,
@@ -103,13 +103,13 @@ impl IntoField for Record {
 
     fn without_place(self) -> Self {
         let cycles_per_m = libm::hypot(self.cycles_per_m_x.into(), self.cycles_per_m_y.into());
-        // Of a turned grating, the two differ by rounding.
+        // In a rotated grating, the two differ by rounding.
         let cycles_per_m_x = (100.0 * cycles_per_m).round() as f32 / 100.0;
         Self { phase_turns: 0.0, cycles_per_m_x, cycles_per_m_y: 0.0, ..self }
     }
 }
 
-/// Phase of a grating at a place and the time 0, in turns.
+/// Phase of a grating at a place and time 0, in turns.
 fn turns(grating: &Record, x_m: f64, y_m: f64) -> f64 {
     let [along_x, along_y, phase] =
         [grating.cycles_per_m_x, grating.cycles_per_m_y, grating.phase_turns].map(f64::from);
@@ -129,7 +129,7 @@ impl Field for Record {
         self.drift_hz == 0.0
     }
 
-    /// Over a rectangle the phase takes every value between its least and its largest.
+    /// Over a rectangle, the phase covers the interval between its extremes.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let turns = Interval::of(cell.corners().into_iter().map(|(x_m, y_m)| turns(self, x_m, y_m)));
         Extremes::Reached(wave_of(self).interval(turns))

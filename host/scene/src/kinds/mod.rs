@@ -1,5 +1,5 @@
 //! The kinds of layer, one file each: the fields in a scene file, their conversion to a record, and the kind's
-//! reference, which is written from the kind's definition in `docs/scene.md` and `PROTOCOL.md` and shares no code with
+//! reference. The reference follows the kind's definition in `docs/scene.md` and `PROTOCOL.md`, and shares no code with
 //! the board.
 
 mod bitmap;
@@ -35,57 +35,57 @@ use crate::source::Places;
 
 pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM};
 
-/// The fields of a kind of layer, as a person writes them.
+/// The fields of a kind of layer, as written in a file.
 pub(crate) trait Words: Sized {
     /// The value of `kind`.
     const WORD: &'static str;
-    /// The blends that the kind can have.
+    /// The allowed blends.
     const BLENDS: &'static [(&'static str, Blend)] =
         &[("replace", Blend::Replace), ("add", Blend::Add), ("multiply", Blend::Multiply), ("max", Blend::Max)];
-    /// The blend if the file does not set one.
+    /// The default blend.
     const BLEND: Blend = Blend::Replace;
     /// Whether the layer needs a region with a rim: a rectangle or an ellipse.
     const NEEDS_RIM: bool = false;
-    /// Whether frictions of a layer that replaces others are totals by default.
+    /// Whether frictions of a layer that replaces others default to totals.
     const TOTALS: bool = false;
 
     /// Reads the fields of the kind.
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self>;
 
-    /// Finds mistakes between fields.
+    /// Reports mistakes between fields.
     fn check(&self, places: &Places, log: &mut Log) {
         let _ = (places, log);
     }
 
-    /// The name of the field that sets the largest friction, or the least, of the layer of a record: those of the least
-    /// and the largest amount, which most kinds have.
+    /// Name of the field that sets the largest or the least friction of a record's layer. By default, the fields of the
+    /// largest and the least amount.
     fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
         let _ = record;
         LowHigh::extreme(most, places)
     }
 
-    /// The fields of the layer of a record whose friction its click is added to, each with its friction, and the field
-    /// of the click. `None` for a kind without clicks.
+    /// The fields that a click of the record's layer is added to, each with its friction, and the field of the click.
+    /// `None` for a kind without clicks.
     fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
         let _ = (places, record);
         None
     }
 
-    /// Whether a layer of this kind without a region acts on the whole screen.
+    /// Whether a layer of this kind acts on the whole screen if it has no region.
     fn fills_screen(&self) -> bool {
         true
     }
 
-    /// Moves the places that the kind's own fields name, for a copy of the layer.
+    /// Moves the places in the kind's own fields, for a copy of the layer.
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {
         let _ = (x_mm, y_mm);
     }
 
-    /// The layer of a record; `None` after a mistake, which has been logged.
+    /// Compiles the layer to a record. Returns `None` after a mistake, which has been logged.
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered>;
 }
 
-/// The fields that a click adds up with.
+/// The fields to which a click is added.
 pub(crate) struct Clicked {
     /// Names of fields, each with its friction, N.
     pub(crate) bases: Vec<(&'static str, f64)>,
@@ -106,36 +106,36 @@ impl From<Record> for Lowered {
     }
 }
 
-/// The reference of a layer over plane and time, in `f64`, before its gain: electric friction in newtons, or a factor.
+/// Reference of a layer over plane and time, in `f64`, before its gain: electric friction in newtons, or a factor.
 pub(crate) trait Field: Debug + Send + Sync {
     /// The friction in a context, without clicks.
     fn at(&self, context: &Context) -> f64;
 
-    /// Whether the friction at a place is always the same, apart from clicks. Otherwise the layer reaches both of its
+    /// Whether the friction at a place is constant in time, apart from clicks. Otherwise the layer reaches both of its
     /// bounds at every place.
     fn is_still(&self) -> bool {
         true
     }
 
-    /// The extremes of a still layer in a cell, clicks included. `bounds` are those of the whole layer, from the kind's
-    /// file in `frixel-layers`. By default they count as reached, so that a refusal depends on the numbers in the scene
-    /// file, and not on the seed of a noise.
+    /// Extremes of a still layer in a cell, clicks included. `bounds` are those of the whole layer, from
+    /// `frixel-layers`. The default treats them as reached, so that a refusal depends on the numbers in the scene file,
+    /// and not on the seed of a noise.
     fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
         let _ = cell;
         Extremes::Reached(bounds)
     }
 
-    /// Length over which the friction varies little, m; `None` when it is the same everywhere.
+    /// Length over which the friction varies little, m; `None` if it is uniform.
     fn detail_m(&self) -> Option<f64> {
         None
     }
 
-    /// The click, if it can be felt.
+    /// The click, if it has an effect.
     fn click(&self) -> Option<Click> {
         None
     }
 
-    /// Whether a place is beyond the line that the finger crosses to click.
+    /// Whether a place is beyond the line whose crossing causes a click.
     fn is_beyond(&self, x_m: f64, y_m: f64) -> bool {
         let _ = (x_m, y_m);
         true
@@ -152,21 +152,21 @@ pub(crate) trait Field: Debug + Send + Sync {
     }
 }
 
-/// The least and the largest friction that a layer asks for in a cell of the screen.
+/// Extremes of a layer's friction in a cell of the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extremes {
     /// The layer reaches both.
     Reached(Interval<f64>),
-    /// Bounds that it need not reach: only evaluating places shows what it does.
+    /// Bounds that may not be reached; only sampling shows.
     Bounded(Interval<f64>),
 }
 
-/// The parameters of a kind in a record, and their reference.
+/// Parameters of a kind in a record, and their reference.
 pub(crate) trait IntoField: Copy {
     /// The friction over plane and time.
     fn field(&self, region: RecordRegion, program: &Program) -> Arc<dyn Field>;
 
-    /// The same at another place, and not turned: what differs between a layer and its copies is left out.
+    /// The same parameters without place and rotation, in which a layer and its copies differ.
     #[must_use]
     fn without_place(self) -> Self {
         self
@@ -178,20 +178,20 @@ pub fn layer_kinds() -> impl Iterator<Item = &'static str> {
     KindName::ALL.iter().map(|(word, _)| *word)
 }
 
-/// The reference of the same friction everywhere, N.
+/// Reference of uniform friction, N.
 pub(crate) fn constant_field(friction_n: f64) -> Arc<dyn Field> {
     Arc::new(constant::ConstantField(friction_n))
 }
 
-/// Range of the friction that a click adds, at any time.
+/// Range of the friction added by a click at any time.
 pub(crate) fn click_interval(click: Option<Click>) -> Interval<f64> {
     Interval::of([0.0, click.map_or(0.0, |click| f64::from(click.height_n))])
 }
 
-/// Makes the types of all kinds from one list.
+/// Defines the types of all kinds from one list.
 macro_rules! kinds {
     ($( $kind:ident in $module:ident, )*) => {
-        /// The fields of a layer's kind, as a person wrote them.
+        /// The fields of a layer's kind, as written in a file.
         #[derive(Clone, Debug, PartialEq)]
         pub(crate) enum Kind {
             $( $kind($module::$kind), )*
@@ -228,7 +228,7 @@ macro_rules! kinds {
         }
 
         impl Kind {
-            /// Whether a layer of this kind without a region acts on the whole screen.
+            /// Whether a layer of this kind acts on the whole screen if it has no region.
             pub(crate) fn fills_screen(&self) -> bool {
                 match self { $( Self::$kind(kind) => Words::fills_screen(kind), )* }
             }
@@ -238,27 +238,27 @@ macro_rules! kinds {
                 match self { $( Self::$kind(_) => <$module::$kind as Words>::WORD, )* }
             }
 
-            /// Finds mistakes between fields.
+            /// Reports mistakes between fields.
             pub(crate) fn check(&self, places: &Places, log: &mut Log) {
                 match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }
             }
 
-            /// The name of the field that sets the largest friction, or the least, of the layer of a record.
+            /// Name of the field that sets the largest or the least friction of a record's layer.
             pub(crate) fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
                 match self { $( Self::$kind(kind) => Words::extreme(kind, most, places, record), )* }
             }
 
-            /// The fields of the layer of a record whose friction its click is added to; `None` without clicks.
+            /// The fields that a click of the record's layer is added to; `None` without clicks.
             pub(crate) fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
                 match self { $( Self::$kind(kind) => Words::clicked(kind, places, record), )* }
             }
 
-            /// Moves the places that the kind's own fields name.
+            /// Moves the places in the kind's own fields.
             pub(crate) fn move_by(&mut self, x_mm: f64, y_mm: f64) {
                 match self { $( Self::$kind(kind) => Words::move_by(kind, x_mm, y_mm), )* }
             }
 
-            /// The layer of a record; `None` after a mistake, which has been logged.
+            /// Compiles the layer to a record. Returns `None` after a mistake, which has been logged.
             pub(crate) fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
                 match self { $( Self::$kind(kind) => Words::lower(kind, layer, lowering), )* }
             }
@@ -271,7 +271,7 @@ macro_rules! kinds {
             }
         }
 
-        /// The layer of a record without its place and its turn: the same for a layer and its copies.
+        /// A record without place and rotation: identical for a layer and its copies.
         pub fn without_place(layer: Record) -> Record {
             match layer {
                 $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )*

@@ -1,4 +1,4 @@
-//! Band-limited noise: the mean of eight cosine waves that a seed chooses.
+//! Band-limited noise: the mean of eight cosine waves drawn from a seed.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -18,19 +18,15 @@ use crate::reference::Context;
 use crate::source::Places;
 use crate::tables::{WAVELENGTH_MM, amount, number};
 
-const SEED: FieldSpec = FieldSpec::new(
-    "seed",
-    Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")),
-    Number(0.0),
-    "the number that the waves are drawn with",
-);
-const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "nothing is finer than this");
-const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "nothing is coarser than this");
-const LOW: AmountFields = amount!("low", Required, "least friction, below which it never falls");
+const SEED: FieldSpec =
+    FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")), Number(0.0), "seed of the random waves");
+const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "shortest wavelength");
+const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "longest wavelength");
+const LOW: AmountFields = amount!("low", Required, "smallest friction");
 const HIGH: AmountFields = amount!(
     "high",
     Required,
-    "largest friction, above which it never rises. It is near the middle most of the time: its standard deviation is \
+    "largest friction. Noise is mostly near the middle: its standard deviation is \
      an eighth of the range"
 );
 

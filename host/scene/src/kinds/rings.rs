@@ -82,7 +82,7 @@ impl IntoField for Record {
     }
 }
 
-/// Phase of rings at a place and the time 0, in turns.
+/// Phase of rings at a place and time 0, in turns.
 fn turns(rings: &Record, x_m: f64, y_m: f64) -> f64 {
     f64::from(rings.cycles_per_m) * libm::hypot(x_m - f64::from(rings.x_m), y_m - f64::from(rings.y_m))
 }
@@ -100,8 +100,8 @@ impl Field for Record {
         self.drift_hz == 0.0
     }
 
-    /// The nearest place of a cell is the centre or lies on the cell's border, and the farthest is a corner. The
-    /// distance takes every value between the two.
+    /// The nearest point of a cell is the centre or lies on the cell's border; the farthest is a corner. The distance
+    /// covers the interval in between.
     fn extremes_in(&self, cell: Cell, _bounds: Interval<f64>) -> Extremes {
         let nearest = cell.nearest_to(self.x_m.into(), self.y_m.into());
         let places = cell.corners().into_iter().chain([nearest]);

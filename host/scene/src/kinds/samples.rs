@@ -6,7 +6,7 @@ use frixel_layers::Bitmap as Record;
 
 use crate::Bitmap;
 
-/// A picture's samples, bilinear between their centres, turned about their corner, held at the border or tiled.
+/// A picture's samples: bilinear between their centres, rotated about their corner, and held at the border or tiled.
 #[derive(Debug)]
 pub(super) struct Samples {
     pub(super) x_m: f64,
@@ -59,8 +59,7 @@ impl Samples {
         self.black_n + self.step_n * mix(upper, lower, below)
     }
 
-    /// The position of a place in samples, along a row and across the rows, measured from the centre of the first
-    /// sample.
+    /// Position of a place in units of samples, along a row and across the rows, from the centre of the first sample.
     pub(super) fn position(&self, x_m: f64, y_m: f64) -> (f64, f64) {
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let along_m = self.along_x * x_m + self.along_y * y_m;

@@ -22,15 +22,15 @@ const SPEEDS: FieldSpec = FieldSpec::new(
     "speeds_mm_per_s",
     Holds::Numbers(Range::new(range::SPEED_M_PER_S.min, range::SPEED_M_PER_S.max / MM, " mm/s")),
     Required,
-    "2 to 16 speeds, rising",
+    "2 to 16 speeds in ascending order",
 );
 const FACTORS: FieldSpec = FieldSpec::new(
     "factors",
     Holds::Numbers(FACTOR),
     Required,
-    "the factor at each of them, straight between, held outside",
+    "the factor at each speed: linear between speeds, constant outside",
 );
-/// Least distance of two speeds: twice the board's resolution, so that rounding never makes them too close.
+/// Smallest spacing of two speeds: twice the board's resolution, so that rounding never makes them too close.
 const STEP_MIN_MM_PER_S: f64 = 2.0 * range::SPEED_STEP_MIN_M_PER_S / MM;
 
 /// `kind = "speed"`.

@@ -22,15 +22,15 @@ use crate::tables::{ANGLE_DEG, HIGH, LOW, PLACE_MM, length, number};
 const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of the middle");
 const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the middle");
 const NUMBER: FieldSpec =
-    FieldSpec::new("number", Holds::Whole(Range::new(1.0, 255.0, "")), Mistake, "spokes in a turn");
+    FieldSpec::new("number", Holds::Whole(Range::new(1.0, 255.0, "")), Mistake, "spokes per turn");
 const ANGLE: FieldSpec = number(
     "angle_deg",
     ANGLE_DEG,
     Number(0.0),
-    "how far the spokes are turned; at 0 one of them begins to the right of the middle, at 90 below it",
+    "rotation of the spokes: at 0 one begins to the right of the middle, at 90 below it",
 );
 
-/// Narrower spokes fade, m.
+/// Width below which spokes fade, m.
 const NARROW_M: f64 = 1e-3;
 
 /// `kind = "spokes"`.
@@ -111,7 +111,7 @@ impl SpokesField {
         (x_m - self.middle_m.0, y_m - self.middle_m.1)
     }
 
-    /// What is left of the wave at a distance: the square of a spoke's width in mm, at most 1.
+    /// Fraction of the wave that remains at a distance: the square of a spoke's width in mm, at most 1.
     fn fade(&self, distance_m: f64) -> f64 {
         let width_m = TAU * distance_m / self.number;
         (width_m / NARROW_M).powi(2).min(1.0)
@@ -130,7 +130,7 @@ impl Field for SpokesField {
         self.mean_n + fade * (self.wave_n(libm::atan2(y_m, x_m) / TAU) - self.mean_n)
     }
 
-    /// From outside of a rectangle, its corners lie at the ends of the angles that it covers, and it covers less than
+    /// Seen from outside a rectangle, its corners lie at the ends of the angles that it covers, and it covers less than
     /// half a turn.
     fn extremes_in(&self, cell: Cell, bounds: Interval<f64>) -> Extremes {
         let corners = cell.corners().map(|corner| self.off_middle_m(corner));

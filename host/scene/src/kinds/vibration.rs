@@ -25,24 +25,24 @@ const FREQUENCY: FieldSpec = number(
     "frequency_hz",
     Range::new(range::FREQUENCY_HZ.min, range::FREQUENCY_HZ.max, " Hz"),
     Required,
-    "how often a second",
+    "repetitions per second",
 );
 const HIGH: AmountFields =
     amount!("high", Required, "largest friction; a sine starts in the middle and rises, a square starts high");
 const BURST: FieldSpec = FieldSpec::new(
     "burst",
     Holds::Table,
-    Means("it goes on"),
-    "it comes and goes: `{ period_ms, on_ms, ramp_ms }`, see [bursts](#bursts)",
+    Means("continuous"),
+    "repeated bursts: `{ period_ms, on_ms, ramp_ms }`, see [bursts](#bursts)",
 );
 const BURST_MS: Range = Range::new(1.0, range::BURST_S.max / MM, " ms");
 const PERIOD: FieldSpec = number("period_ms", BURST_MS, Required, "from the start of a burst to the next one");
-const ON: FieldSpec = number("on_ms", BURST_MS, Required, "how long a burst lasts; at most the period");
+const ON: FieldSpec = number("on_ms", BURST_MS, Required, "duration of a burst; at most the period");
 const RAMP: FieldSpec = number(
     "ramp_ms",
     Range::new(0.0, 0.5 * BURST_MS.max, " ms"),
     Number(0.0),
-    "how long it rises and falls at its two ends; at most half of a burst each",
+    "rise time and fall time of a burst; each at most half of `on_ms`",
 );
 
 /// `kind = "vibration"`.
@@ -112,7 +112,7 @@ impl Burst {
         Some(Self { period_ms, on_ms, ramp_ms })
     }
 
-    /// Converts times to whole ticks, as the board does, so that both have the same period.
+    /// Converts times to whole ticks, as the board does, so that both periods agree.
     fn lower(self, lowering: &Lowering) -> RecordBurst {
         let tick_hz = f64::from(lowering.tick_hz);
         let whole = |time_ms: f64| ((time_ms * MM * tick_hz).round() / tick_hz) as f32;
@@ -146,7 +146,7 @@ impl Field for Record {
     }
 }
 
-/// The part of a vibration that is left at a time since it was switched on.
+/// Envelope of a vibration at a time since it was switched on, from 0 to 1.
 fn envelope(burst: RecordBurst, t_s: f64) -> f64 {
     let [period_s, on_s, ramp_s] = [burst.period_s, burst.on_s, burst.ramp_s].map(f64::from);
     if period_s <= 0.0 {

@@ -19,7 +19,7 @@ const DUTY: FieldSpec = number(
     "duty",
     Range::new(range::DUTY.min, range::DUTY.max, ""),
     Number(0.5),
-    "the part of a square's wavelength that is high",
+    "fraction of a square's wavelength that is high",
 );
 
 /// Reads `wave`, and `duty` if it is a square wave.
@@ -36,9 +36,9 @@ pub(super) fn read(fields: &mut Fields, log: &mut Log) -> Wave {
 #[derive(Debug)]
 pub(super) struct WaveField {
     pub(super) wave: Wave,
-    /// Where the wave is 0, N.
+    /// Friction where the wave is 0, N.
     pub(super) trough_n: f64,
-    /// Where the wave is 1, N.
+    /// Friction where the wave is 1, N.
     pub(super) crest_n: f64,
 }
 

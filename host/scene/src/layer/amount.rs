@@ -1,4 +1,4 @@
-//! The target amount of a layer, in one of three units; the field's name states the unit.
+//! Target amount of a layer, in one of three units; the field's name states the unit.
 
 use super::super::fields::Fields;
 use super::super::grammar::AmountFields;
@@ -31,7 +31,7 @@ pub(crate) enum Unit {
 pub(crate) const UNITS: [Unit; 2] = [Unit::Friction, Unit::Factor];
 
 impl Amount {
-    /// Reads an amount, in the unit that the layer's amounts have.
+    /// Reads an amount, in the unit of the layer's amounts.
     pub(crate) fn read(fields: &mut Fields, amount: &AmountFields, unit: Unit, log: &mut Log) -> Option<Self> {
         let AmountFields { newtons, fraction, factor } = amount;
         if unit == Unit::Factor {
@@ -60,7 +60,7 @@ impl Amount {
     }
 }
 
-/// The least and the largest amount of a layer that varies between two.
+/// The least and the largest amount of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LowHigh {
     pub(crate) low: Amount,
@@ -89,7 +89,7 @@ impl LowHigh {
         }
     }
 
-    /// The name of the field of the largest amount, or of the least.
+    /// The field of the largest amount, or of the least.
     pub(crate) fn extreme(most: bool, places: &Places) -> &'static str {
         places.first_of(if most { HIGH } else { LOW }.names())
     }

@@ -18,7 +18,7 @@ use super::source::Places;
 use super::tables;
 use super::titles::{LayerNumber, LayerTitle};
 
-/// Most durations of a pattern.
+/// Largest number of durations in a pattern.
 const PATTERN_MAX: usize = 64;
 
 /// One layer as written.
@@ -26,19 +26,19 @@ const PATTERN_MAX: usize = 64;
 pub(crate) struct Layer {
     pub(crate) title: LayerTitle,
     pub(crate) name: Option<String>,
-    /// The name of the layer that `repeat` made it from.
+    /// The name of the layer with `repeat` that it is a copy of.
     pub(crate) family: Option<String>,
-    /// Whether `repeat` made it from another layer.
+    /// Whether it is a copy made by `repeat`.
     pub(crate) is_copy: bool,
     pub(crate) region: Option<Region>,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
     pub(crate) above: Above,
-    /// Whether the host changes the layer while it plays.
+    /// Whether the host may change the layer while it plays.
     pub(crate) live: bool,
-    /// Whether the layer is on when the scene begins to play.
+    /// Whether the layer is on at the start of a play.
     pub(crate) starts_on: bool,
-    /// What a trigger plays, ms on, off, on, and so on; empty: on.
+    /// Pattern of a trigger, alternating on and off times, ms; empty to stay on.
     pub(crate) pattern_ms: Vec<f64>,
     pub(crate) kind: Kind,
     pub(crate) places: Places,
@@ -59,7 +59,7 @@ impl Layer {
         fields.rename(format!("layer {number}"));
         let name = fields.text(log, &tables::layer::NAME);
         let Some(kind_name) = fields.choice_or_nearest(log, &tables::layer::KIND, KindName::ALL) else {
-            // The other fields depend on the kind, which is unknown. Read those that every kind has.
+            // The other fields depend on the unknown kind. Read the common ones.
             let _ = Common::read(&mut fields, KindName::Constant, log);
             fields.give_up_without(log, "kind");
             return None;
@@ -108,7 +108,7 @@ impl Layer {
     }
 }
 
-/// Reads the fields of a layer of a kind, whose amounts have a unit, to log their mistakes.
+/// Reads the fields of a layer of a kind and a unit, to log their mistakes.
 pub(crate) fn read_fields(fields: &mut Fields, kind: KindName, unit: Unit, log: &mut Log) {
     let _ = Common::read(fields, kind, log);
     let _ = kind.read(fields, unit, log);

@@ -36,7 +36,7 @@ enum Shape {
 }
 
 impl Region {
-    /// The same region elsewhere.
+    /// The same region moved by an offset.
     pub(crate) fn moved_by(self, x_mm: f64, y_mm: f64) -> Self {
         let moved =
             |rectangle: Rectangle| Rectangle { x_mm: rectangle.x_mm + x_mm, y_mm: rectangle.y_mm + y_mm, ..rectangle };
@@ -68,7 +68,7 @@ impl Rectangle {
     }
 }
 
-/// A region that cannot be understood. The mistake has been logged.
+/// An invalid region, whose mistake has been logged.
 pub(crate) struct Misread;
 
 /// The region of a layer, `None` for the whole screen. A button needs a region with a rim.

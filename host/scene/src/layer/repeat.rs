@@ -37,7 +37,7 @@ impl Repeat {
         Self { columns, rows, dx_mm, dy_mm }
     }
 
-    /// The copies of a layer, row after row. Copies of a layer with a name have its name and a number from one.
+    /// Copies of a layer, row by row. Copies of a named layer have its name and a number from one.
     pub(crate) fn of(self, layer: &Layer, kind: KindName) -> Vec<Layer> {
         if self.columns * self.rows == 1 {
             return vec![layer.clone()];

@@ -15,14 +15,13 @@ use super::program::Bitmap;
 use super::reach::Reach;
 use super::warning::Warning;
 
-/// Total friction that differs from natural friction by less than this, relative to it, counts as natural friction,
-/// which is rounded to `f32`.
+/// Relative tolerance for total friction that equals natural friction, which is rounded to `f32`.
 const NATURAL_ROUNDING: f64 = 1e-6;
 pub(crate) const MM: f64 = 1e-3;
-/// How often the pitch of a draft's picture is doubled until the picture fits.
+/// Number of times that a draft may double a picture's pitch to make it fit.
 const COARSER_MAX: u32 = 5;
 
-/// Compiles layers to records, and collects the points and bitmaps that they name.
+/// Compiles layers to records, and collects the points and bitmaps that they refer to.
 pub(crate) struct Lowering<'a, 's> {
     scene: &'a Scene,
     header: &'a Header,
@@ -47,7 +46,7 @@ impl<'a, 's> Lowering<'a, 's> {
         Self { scene, header, reach, tick_hz, pool, points: Vec::new(), noises: 0, clicks: 0, log }
     }
 
-    /// The points and bitmaps that records name.
+    /// The points and bitmaps that records refer to.
     pub(super) fn finish(self) -> (Vec<Point>, Vec<Bitmap>) {
         (self.points, self.pool.finish())
     }
@@ -57,7 +56,7 @@ impl<'a, 's> Lowering<'a, 's> {
         self.log.mistakes()
     }
 
-    /// The record of a layer; `None` if it has a mistake.
+    /// Compiles a layer to a record; `None` if it has a mistake.
     pub(super) fn record(&mut self, layer: &Layer) -> Option<Record> {
         self.log.set_layer(Some(layer.number().table));
         let record = self.lower(layer);
@@ -77,14 +76,14 @@ impl<'a, 's> Lowering<'a, 's> {
         Some(Record { region, blend: layer.blend, gain: layer.gain as f32, layer: record_layer })
     }
 
-    /// Adds a warning, unless the layer is a copy of one that has it already.
+    /// Adds a warning, unless the layer is a copy that repeats it.
     pub(crate) fn warn(&mut self, layer: &Layer, warning: Option<Warning>) {
         if let Some(warning) = warning.filter(|_| !layer.is_copy) {
             self.log.warn_about(layer, warning);
         }
     }
 
-    /// Adds the picture of a layer to the pool. `visible` is the rectangle in which the picture shows.
+    /// Adds the picture of a layer to the pool. `visible` is the visible part of the picture.
     pub(crate) fn place_bitmap(
         &mut self,
         layer: &Layer,
@@ -103,7 +102,7 @@ impl<'a, 's> Lowering<'a, 's> {
             Err(Unplaced::PoolTooSmall { needed_bytes, pool_bytes, mut pitch_mm }) => {
                 let offset = if layer.places.has("pitch_mm") { layer.places.field("pitch_mm") } else { picture };
                 self.log.add(offset, FitMistake::PoolTooSmall { needed_bytes, pool_bytes, pitch_mm });
-                // A draft plays it coarser.
+                // A draft plays a coarser picture.
                 let mut coarser = bitmap.clone();
                 (0..COARSER_MAX).find_map(|_| {
                     coarser.pitch_mm = Some(pitch_mm);
@@ -138,7 +137,7 @@ impl<'a, 's> Lowering<'a, 's> {
         })
     }
 
-    /// Stores points, or reuses those of another layer if they are equal.
+    /// Stores points, or reuses equal ones of another layer.
     pub(crate) fn points(&mut self, layer: &Layer, points: Vec<Point>) -> Option<(u8, u8)> {
         let count = points.len();
         let first = self.points.windows(count).position(|held| held == points).unwrap_or(self.points.len());

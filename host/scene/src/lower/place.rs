@@ -8,7 +8,7 @@ use super::super::log::Log;
 use super::super::mistake::FitMistake;
 use super::MM;
 
-/// Tolerance for a layer that extends past the screen because millimetres are rounded, mm.
+/// Tolerance for a layer that extends past the screen by rounding, mm.
 const OFF_SCREEN_MM: f64 = 1e-6;
 
 /// Cycles per metre along x and y; exact for right angles.
@@ -36,7 +36,7 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     let furthest = past.into_iter().max_by(|(_, one), (_, other)| one.total_cmp(other));
     if let Some((edge, beyond_mm)) = furthest.filter(|(_, beyond_mm)| *beyond_mm > OFF_SCREEN_MM) {
         let field = if layer.region.is_some() { "region" } else { "x_mm" };
-        // Round up to a micrometre, so that a move by this distance is enough.
+        // Round up to a micrometre, so that moving by this distance suffices.
         let beyond_mm = (beyond_mm * 1e3 - 1e-6).ceil() / 1e3;
         let layer_title = layer.title.to_string();
         log.add(
@@ -46,8 +46,8 @@ pub(crate) fn check_on_screen(scene: &Scene, layer: &Layer, rectangle: Rectangle
     }
 }
 
-/// The region of a rectangle. If it covers the whole screen, the region is the screen, which costs the board nothing. A
-/// button keeps its sides.
+/// The region of a rectangle. A rectangle that covers the whole screen becomes the screen, which costs the board
+/// nothing. A button keeps its sides.
 pub(crate) fn rectangle(rectangle: Rectangle, header: &Header, button: bool) -> WireRegion {
     let [x_m, y_m, width_m, height_m] = stretches(rectangle, header);
     let everywhere = x_m <= 0.0 && y_m <= 0.0 && width_m >= header.screen_width_m && height_m >= header.screen_height_m;
@@ -65,8 +65,8 @@ fn stretches(rectangle: Rectangle, header: &Header) -> [f32; 4] {
     [x_m, y_m, width_m, height_m]
 }
 
-/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen. A side
-/// that is meant to extend past the screen, in a draft, stays as it is.
+/// Start and length of a side in metres. The length is shortened if rounding would extend it past the screen, but not
+/// if the side is meant to extend past it, as in a draft.
 fn stretch(start_mm: f64, length_mm: f64, screen_m: f32) -> (f32, f32) {
     let screen_mm = f64::from(screen_m) / MM;
     let rounding_mm = OFF_SCREEN_MM + f64::from(f32::EPSILON) * screen_mm;

@@ -20,7 +20,7 @@ pub enum FieldMistake {
         /// The known names, and the nearest one.
         nearest: Nearest,
     },
-    /// A scene is to play without a host.
+    /// A scene asks to play without a host.
     #[error("a scene plays only while its host is connected: delete this line")]
     Autonomous,
     /// Fields that belong to another table.
@@ -40,7 +40,7 @@ pub enum FieldMistake {
     MissingField {
         /// The missing field.
         field: &'static str,
-        /// Another field that says the same in another unit, if there is one.
+        /// The same quantity in another unit, if there is such a field.
         other: Option<&'static str>,
         /// The table.
         table: String,
@@ -55,7 +55,7 @@ pub enum FieldMistake {
         /// The type that was found.
         found: &'static str,
     },
-    /// Something else stands where a table is expected.
+    /// A value is not a table.
     #[error("`{field}` has to be a table, and this is {found}: write {write}")]
     NotATable {
         /// The field.
@@ -65,7 +65,7 @@ pub enum FieldMistake {
         /// What to write instead.
         write: String,
     },
-    /// Something else stands where a list of tables is expected.
+    /// A value is not a list of tables.
     #[error(
         "`{field}` has to be a list of tables, and this is {found}: write `[[{field}]]`, in double brackets, before the \
          fields of each"
@@ -90,7 +90,7 @@ pub enum FieldMistake {
         /// The unit, with a space before it; empty if there is no unit.
         unit: &'static str,
     },
-    /// A time is longer than one that it is a part of.
+    /// A time is longer than the time that contains it.
     #[error("`{field} = {}` is longer than {whole}: expected at most {max_ms} ms", Shown(*.found))]
     TooLong {
         /// The field.
@@ -118,7 +118,7 @@ pub enum FieldMistake {
         /// The field.
         field: &'static str,
     },
-    /// A length is in pixels, and the scene does not say how large its design is.
+    /// A length is in pixels, but the scene states no design size.
     #[error("`{field}` is in pixels, and the scene has no design size: add [design] with `width_px` and `height_px`")]
     NoDesign {
         /// The field.
@@ -137,14 +137,14 @@ pub enum FieldMistake {
         high: f64,
     },
     /// One amount is given in two units.
-    #[error("`{one}` and `{other}` say the same in two units: leave one of them out")]
+    #[error("`{one}` and `{other}` are the same quantity in two units: remove one of them")]
     TwoUnits {
         /// A field.
         one: &'static str,
         /// Another field for the same amount.
         other: &'static str,
     },
-    /// A number has a fraction and must not.
+    /// A number is not whole.
     #[error("`{field} = {}` has to be a whole number: round it", Shown(*.found))]
     NotWhole {
         /// The field.
@@ -152,8 +152,8 @@ pub enum FieldMistake {
         /// Its value.
         found: f64,
     },
-    /// The first number of an interval is above the second one.
-    #[error("`{field} = [{}, {}]` falls: write the smaller number first", Shown(*.low), Shown(*.high))]
+    /// An interval is reversed.
+    #[error("`{field} = [{}, {}]` is reversed: write the smaller number first", Shown(*.low), Shown(*.high))]
     IntervalReversed {
         /// The field.
         field: &'static str,
@@ -162,10 +162,10 @@ pub enum FieldMistake {
         /// The second number.
         high: f64,
     },
-    /// The numbers of an empirical law are none.
-    #[error("`exponent`, `points` and `intervals_n` are no law: {reason}")]
+    /// The numbers do not form an empirical law.
+    #[error("`exponent`, `points` and `intervals_n` do not form a valid law: {reason}")]
     Law {
-        /// What is wrong, and what is possible.
+        /// The violated condition, and what is allowed.
         reason: String,
     },
     /// A date is not `YYYY-MM-DD`.
@@ -174,14 +174,14 @@ pub enum FieldMistake {
         /// The date, as written.
         found: String,
     },
-    /// A text that has to say something is empty.
-    #[error("`{field}` is empty: say it in a few words")]
+    /// A required text is empty.
+    #[error("`{field}` is empty: write a few words")]
     EmptyText {
         /// The field.
         field: &'static str,
     },
-    /// A text has characters that are not seen.
-    #[error("`{field}` has a character that controls a terminal, or is not seen: take it out")]
+    /// A text contains invisible characters.
+    #[error("`{field}` contains a control or invisible character: remove it")]
     Unprintable {
         /// The field.
         field: &'static str,
@@ -206,7 +206,7 @@ pub enum FieldMistake {
         /// Most entries.
         max: usize,
     },
-    /// The speeds of a curve do not rise.
+    /// The speeds of a curve are not in ascending order.
     #[error(
         "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and {after} comes after \
          {before}: sort them"
@@ -217,7 +217,7 @@ pub enum FieldMistake {
         /// The one after it, mm/s.
         after: f64,
     },
-    /// Stripes or rings move so fast that more of them pass a place than a board accepts.
+    /// Stripes or rings move faster than a board supports.
     #[error(
         "at {found_mm_per_s} mm/s and a wavelength of {wavelength_mm} mm, more than {max_hz} waves pass a place in a second: \
          write at most {max_mm_per_s} mm/s, either way"
@@ -225,32 +225,32 @@ pub enum FieldMistake {
     DriftsTooFast {
         /// Speed of the waves, mm/s.
         found_mm_per_s: f64,
-        /// From wave to wave, mm.
+        /// Wavelength, mm.
         wavelength_mm: f64,
-        /// Most waves a second that pass a place.
+        /// Largest number of waves that may pass a place per second, Hz.
         max_hz: f64,
-        /// Fastest that waves of this length may move, mm/s.
+        /// Largest speed at this wavelength, mm/s.
         max_mm_per_s: f64,
     },
     /// The region of a button is a polygon.
     #[error("a button is a rectangle or an ellipse, and this region is a polygon: change its `shape`")]
     ButtonPolygon,
-    /// Several copies of a layer would lie at the same place.
-    #[error("the {what} of this repeat would lie on one another: give the distance from one to the next, `{step}`")]
+    /// Copies of a layer lie at the same place.
+    #[error("the {what} of this repeat would lie on top of each other: set their spacing, `{step}`")]
     RepeatInPlace {
         /// `columns` or `rows`.
         what: &'static str,
-        /// The field of their distance.
+        /// The field of their spacing.
         step: &'static str,
     },
-    /// A layer has a field for when it is switched, and can never be switched.
-    #[error("{layer} {what}, and nothing could switch it on: write `live = true`, or leave `{field}` out")]
+    /// A layer has a field for switching, but can never be switched.
+    #[error("{layer} {what}, but nothing can switch it on: write `live = true`, or leave `{field}` out")]
     NeedsLive {
         /// The layer.
         layer: String,
         /// The field.
         field: &'static str,
-        /// What the field says, with a verb.
+        /// The field's effect, with a verb.
         what: &'static str,
     },
     /// The friction of a layer with `blend = "add"` is given in total.

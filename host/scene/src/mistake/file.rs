@@ -1,4 +1,4 @@
-//! Mistakes of whole files: of a scene, of those that it includes, and of those that it names.
+//! Mistakes that concern a whole file: the scene, an included file, or a file that it names.
 
 use thiserror::Error;
 
@@ -18,13 +18,19 @@ pub enum FileMistake {
     #[error("this is not TOML: {0}")]
     Syntax(String),
     /// The scene file has another version.
-    #[error("this scene file has version {}, and this frixel reads version {VERSION}: use a frixel that knows it", Shown(*.found))]
+    #[error(
+        "this scene file has version {}, and this frixel reads version {VERSION}: use a version that supports it",
+        Shown(*.found)
+    )]
     Version {
         /// The version, as written.
         found: f64,
     },
     /// No screen or finger of this name is bundled.
-    #[error("no {what} \"{}\" is bundled, and the name of a file has an ending such as .toml; {nearest}", brief(.found))]
+    #[error(
+        "there is no bundled {what} \"{}\", and a file name needs an extension such as .toml; {nearest}",
+        brief(.found)
+    )]
     UnknownProfile {
         /// `finger` or `screen`.
         what: &'static str,
@@ -33,28 +39,28 @@ pub enum FileMistake {
         /// The bundled names, and the nearest one.
         nearest: Nearest,
     },
-    /// There is more of something than is read.
+    /// There are more entries than the limit.
     #[error("there are {found} {what}, and at most {max} are read: {advice}")]
     TooMuch {
-        /// What is counted, and where.
+        /// The counted entries.
         what: &'static str,
         /// How many there are.
         found: usize,
-        /// Most that are read.
+        /// The limit.
         max: usize,
         /// What to do.
         advice: &'static str,
     },
-    /// Files include one another.
+    /// Files include each other in a cycle.
     #[error("{}: take {} out", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
     IncludedByItself {
-        /// The files, each of which includes the next one, and the last one the first.
+        /// The files: each includes the next one, and the last includes the first.
         circle: Vec<String>,
     },
     /// A scene has too many files.
-    #[error("a scene has at most {max} files, and this one would be one too many: put some of them together")]
+    #[error("a scene has at most {max} files, and this is one too many: merge some of them")]
     TooManyFiles {
-        /// Most files of a scene.
+        /// The limit.
         max: usize,
     },
     /// A file is included by two files, or twice by one.
@@ -70,7 +76,7 @@ pub enum FileMistake {
         /// The file that includes it already.
         other: String,
     },
-    /// A file that is to be included is not there.
+    /// An included file is missing.
     #[error(
         "{file} includes {}, which was not found: names start from the folder of {file}{}",
         brief(.included),
@@ -81,10 +87,10 @@ pub enum FileMistake {
         file: String,
         /// The file that it includes.
         included: String,
-        /// The nearest name in the place that was searched, if one is near enough.
+        /// The most similar name in that place, if there is one.
         nearest: Option<String>,
     },
-    /// A file that is to be included cannot be used.
+    /// An included file cannot be used.
     #[error("{file} includes {}, which cannot be used: {reason}", brief(.included))]
     IncludedUnusable {
         /// The file with this `include`.
@@ -95,7 +101,7 @@ pub enum FileMistake {
         reason: String,
     },
     /// Two files of a scene have the same table.
-    #[error("`{field}` stands in {file} and in {other}: a scene has one, so leave one of them out")]
+    #[error("`{field}` is in both {file} and {other}: a scene has only one, so remove one of them")]
     TableTwice {
         /// The table.
         field: &'static str,
@@ -114,7 +120,7 @@ pub enum FileMistake {
         /// Another file that has a layer of this name.
         other: String,
     },
-    /// There is no file of this name.
+    /// A file is missing.
     #[error(
         "{what} \"{}\" was not found in {}{}: {}",
         brief(.file),
@@ -129,7 +135,7 @@ pub enum FileMistake {
         file: String,
         /// The place that was searched.
         folder: String,
-        /// The nearest name in that place, if one is near enough.
+        /// The most similar name in that place, if there is one.
         nearest: Option<String>,
     },
     /// The name of a file is empty.
@@ -156,7 +162,7 @@ impl FileMistake {
     }
 }
 
-/// What to do about a file that is not there.
+/// Advice for a missing file.
 fn missing_advice(file: &str) -> &'static str {
     if file.starts_with('~') {
         TILDE_ADVICE
@@ -175,7 +181,7 @@ fn which_has(nearest: Option<&str>) -> String {
     nearest.map_or(String::new(), |name| format!(", which has \"{name}\""))
 }
 
-/// Files that include one another, beginning with the last one.
+/// Names the cycle of including files, beginning with the last one.
 fn in_circle(files: &[String]) -> String {
     let Some((last, others)) = files.split_last() else { return String::new() };
     let way: Vec<&str> = std::iter::once(last).chain(others).map(String::as_str).collect();

@@ -1,4 +1,4 @@
-//! Mistakes of a scene that was read, but does not fit its screen, its finger or the board.
+//! Mistakes of a scene that does not fit its screen, its finger or the board.
 
 use thiserror::Error;
 
@@ -6,20 +6,20 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitMistake {
-    /// The scene has more of something than a board has room for.
+    /// The scene has more of something than the board supports.
     #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
     TooMany {
-        /// The kind of thing that there are too many of.
+        /// The kind of thing.
         what: &'static str,
-        /// The number of this one, from one.
+        /// The number of this one, counted from one.
         number: usize,
         /// The board's limit.
         max: usize,
     },
-    /// The drive may go beyond the empirical law of the finger.
+    /// The drive exceeds the measured range of the finger's empirical law.
     #[error(
-        "the drive goes up to {found_v_rms} V rms, and this finger was measured up to {measured_v_rms} V rms; what it \
-         feels above nobody knows: leave `voltage_max_v_rms` out, and the drive ends there"
+        "the drive goes up to {found_v_rms} V rms, but this finger was measured only up to {measured_v_rms} V rms: \
+         leave `voltage_max_v_rms` out, and the drive ends there"
     )]
     BeyondLaw {
         /// Largest rms voltage of the drive, V.
@@ -53,24 +53,24 @@ pub enum FitMistake {
         raised(.raise),
     )]
     AboveReach {
-        /// The layer or layers, with the verb.
+        /// The layers, with the verb.
         asking: String,
         /// The layers' target friction, N.
         target_n: f64,
         /// `in total` or `above natural friction`.
         reference: &'static str,
-        /// The target as a part of what can be reached, if the layers' amounts are fractions.
+        /// The target as a fraction of the reachable friction, if the layers' amounts are fractions.
         part_of_reach: Option<f64>,
         /// Largest rms voltage, V.
         voltage_v_rms: f64,
-        /// The largest friction that can be reached, rounded down, N.
+        /// The largest reachable friction, rounded down, N.
         reach_n: f64,
         /// What to change in the layers.
         cure: Box<str>,
-        /// The limits of `[drive]` that reach the target if they are raised to these values, V; empty if other limits
-        /// forbid that, or if the amounts are fractions, which more voltage does not change.
+        /// The fields of `[drive]` whose increase to these values reaches the target, V. Empty if other limits forbid
+        /// it, or if the amounts are fractions, since these scale with the voltage.
         raise: Vec<(&'static str, f64)>,
-        /// Whether the number is in reach if it was meant in millinewtons.
+        /// Whether the number would be in reach as millinewtons.
         may_be_millinewtons: bool,
     },
     /// The target friction of a layer is less than the friction at no voltage.
@@ -79,7 +79,7 @@ pub enum FitMistake {
          {natural_n} N: {cure}, or write `saturate = true` under [drive] to have it clamped"
     )]
     BelowNatural {
-        /// The layer or layers, with the verb.
+        /// The layers, with the verb.
         asking: String,
         /// The layers' target friction, N.
         target_n: f64,
@@ -96,21 +96,21 @@ pub enum FitMistake {
         if *.has_copies { ", each copy of a `repeat` counted" } else { "" }
     )]
     TooManyLayers {
-        /// Layers of the scene.
+        /// Number of layers in the scene.
         count: usize,
         /// Whether some of them are copies.
         has_copies: bool,
         /// The board's limit.
         max: usize,
     },
-    /// A tick takes too long at some place.
+    /// The tick exceeds its time limit at some place.
     #[error(
         "{layers} {} at x {x_mm} mm, y {y_mm} mm: a tick there is estimated at {cycles} cycles, and the board has time for \
          {cycles_max}: {}",
         match (*.alone, *.meet) {
             (true, _) => "takes too long",
-            (false, true) => "meet",
-            (false, false) => "are in one cell of the board's grid, though they do not meet,",
+            (false, true) => "overlap",
+            (false, false) => "share a cell of the board's grid, though they do not overlap,",
         },
         if *.alone { "use another kind of layer, or another board" } else { "move layers apart, or leave some out" }
     )]
@@ -121,13 +121,13 @@ pub enum FitMistake {
         cycles_max: u32,
         /// The layers that the tick evaluates there.
         layers: String,
-        /// Whether it is one layer.
+        /// Whether there is only one such layer.
         alone: bool,
-        /// Whether those layers alone exceed the limit at this place. Otherwise they only share a cell of the grid.
+        /// Whether these layers overlap at this place. Otherwise they only share a cell of the grid.
         meet: bool,
-        /// The place from the left edge of the screen, mm.
+        /// Distance from the left edge of the screen, mm.
         x_mm: f64,
-        /// The place from the top edge of the screen, mm.
+        /// Distance from the top edge of the screen, mm.
         y_mm: f64,
     },
     /// The pictures need more memory than the board has for them.
@@ -152,7 +152,7 @@ pub enum FitMistake {
         found: f64,
         /// The board's limit at the scene's carrier, V.
         board: f64,
-        /// Where the limit is from, if from the carrier; otherwise empty.
+        /// Origin of the limit if it is the carrier; otherwise empty.
         why: &'static str,
     },
     /// The carrier is too fast for the board's tick.
@@ -183,8 +183,8 @@ pub enum FitMistake {
     /// The contact at the largest voltage is wider than the finger.
     #[error(
         "at {voltage_v_rms:.1} V rms the contact would have a radius of {contact_mm:.1} mm under a finger of {radius_mm} mm, \
-         where the model is not valid: a skin gap is missing, since {gap_um:.2} um between electrode and finger are too few; \
-         give the finger a `skin_gap_um` of some micrometres, or lower `voltage_max_v_rms`"
+         where the model is not valid: a skin gap is missing, since {gap_um:.2} um between electrode and finger is too \
+         little; give the finger a `skin_gap_um` of a few micrometres, or lower `voltage_max_v_rms`"
     )]
     ContactWiderThanFinger {
         /// The largest rms voltage, V.
@@ -196,18 +196,18 @@ pub enum FitMistake {
         /// Effective gap of coating and skin, um.
         gap_um: f64,
     },
-    /// The springs of a board cannot stand in for a soft finger.
+    /// Linear springs cannot approximate the soft finger.
     #[error(
-        "a board plays springs of one stiffness, and those nearest to this soft finger differ from it by {found_percent:.1} % \
-         of the reach, more than {max_percent} %: lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"
+        "a board plays linear springs, and the closest ones differ from this soft finger by {found_percent:.1} % of \
+         the reach, more than {max_percent} %: lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"
     )]
     SoftFinger {
         /// Largest deviation, in percent of the reachable electric friction.
         found_percent: f64,
-        /// Largest deviation that is played, in percent.
+        /// Largest allowed deviation, in percent.
         max_percent: f64,
     },
-    /// Each number is in range, but the contact model or its table refuses their combination.
+    /// The contact model or its table rejects the combination of numbers, each of which is in range.
     #[error("this finger on this coating cannot be played ({reason}): check finger, coating and `voltage_max_v_rms`")]
     Model {
         /// The reason.
@@ -215,7 +215,7 @@ pub enum FitMistake {
     },
 }
 
-/// The limits that help if they are raised.
+/// The limits to raise, as advice.
 fn raised(limits: &[(&str, f64)]) -> String {
     let limits: Vec<String> = limits.iter().map(|(field, to)| format!("`{field}` to {to}")).collect();
     if limits.is_empty() { String::new() } else { format!("raise {}, ", limits.join(" and ")) }

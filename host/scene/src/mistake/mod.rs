@@ -1,4 +1,4 @@
-//! The mistakes that a scene can have. Each message states what was found, what is expected, and what to do.
+//! Mistakes in a scene. Each message states what was found, what is expected, and how to fix it.
 
 mod field;
 mod file;
@@ -12,10 +12,10 @@ pub use field::FieldMistake;
 pub use file::FileMistake;
 pub use fit::FitMistake;
 
-/// What to do about a path that starts with a tilde.
-pub const TILDE_ADVICE: &str = "only a shell replaces `~` by your folder, so write that folder's path in full";
+/// Advice for a path that starts with a tilde.
+pub const TILDE_ADVICE: &str = "only a shell expands `~`, so write your home folder's path in full";
 
-/// What to do about a path with backslashes, which begin escapes such as `\t` in a TOML string.
+/// Advice for a path with backslashes, which begin escapes such as `\t` in a TOML string.
 pub(crate) const SLASH_ADVICE: &str = "write / instead of \\ between the parts of a path";
 
 /// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
@@ -28,28 +28,28 @@ pub enum Mistake {
     /// Of a whole file, or between files.
     #[error(transparent)]
     File(#[from] FileMistake),
-    /// The scene asks for more than screen, finger and board have.
+    /// The scene exceeds the screen, the finger or the board.
     #[error(transparent)]
     Fit(#[from] FitMistake),
-    /// An expectation of a scenario does not say what has to be seen.
+    /// An expectation of a scenario has no condition.
     #[error(
         "this [[expect]] expects nothing: add `output`, `electrode_below_fraction`, `friction_fraction`, `state`, `fault` or `error`"
     )]
     NothingExpected,
-    /// An expectation of a scenario counts from what has no such name.
+    /// An expectation of a scenario refers to an unknown name.
     #[error(
-        "`after = \"{}\"` names no command and no fault: give one of them this `name`", brief(.found)
+        "`after = \"{}\"` names neither a command nor a fault: give one of them this `name`", brief(.found)
     )]
     UnknownEvent {
         /// The name, as written.
         found: String,
     },
-    /// A command or a fault of a scenario has the name of another one.
-    #[error("`name = \"{}\"` is the name of line {line}, too: give each its own", brief(.name))]
+    /// Two commands or faults of a scenario share a name.
+    #[error("`name = \"{}\"` is already used on line {line}: choose another name", brief(.name))]
     NameTwice {
         /// The name.
         name: String,
-        /// The line that has it first.
+        /// The line of the first use.
         line: usize,
     },
     /// An expectation of a scenario ends before it begins.
@@ -60,7 +60,7 @@ pub enum Mistake {
         /// Last time, in ms.
         to_ms: f64,
     },
-    /// A command or a fault of a scenario begins after its end.
+    /// A command or a fault of a scenario begins after the scenario's end.
     #[error(
         "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, \
          or begin earlier"
@@ -74,7 +74,7 @@ pub enum Mistake {
 }
 
 impl Mistake {
-    /// The nearest valid name to an unknown one, if one is near enough.
+    /// The valid name most similar to an unknown one, if one is similar enough.
     pub fn nearest(&self) -> Option<&str> {
         match self {
             Self::Field(FieldMistake::UnknownField { nearest, .. } | FieldMistake::UnknownChoice { nearest, .. })

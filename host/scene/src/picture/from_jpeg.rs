@@ -17,7 +17,7 @@ pub(super) fn decode(jpeg: &[u8], pixels_max: usize) -> Result<Picture, PictureE
         let words = format!("{error:?}");
         PictureError::Damaged(words.split_whitespace().collect::<Vec<_>>().join(" "))
     };
-    // Strict: a picture that ends early would otherwise have a flat rest.
+    // Strict mode rejects a truncated picture, whose rest would be flat.
     let options = DecoderOptions::new_safe().set_max_width(PIXELS_MAX).set_max_height(PIXELS_MAX).set_strict_mode(true);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(jpeg), options);
     decoder.decode_headers().map_err(damaged)?;

@@ -19,13 +19,13 @@ pub(super) fn decode(png: &[u8], pixels_max: usize) -> Result<Picture, PictureEr
     let size = reader.output_buffer_size().ok_or_else(|| PictureError::Damaged("it has no size".to_owned()))?;
     let mut bytes = vec![0; size];
     let frame = reader.next_frame(&mut bytes).map_err(damaged)?;
-    // The orientation may stand behind the pixels. What is damaged there does not matter to them.
+    // The orientation may follow the pixels. Damage there does not matter to them.
     let _ = reader.finish();
     let orientation = Orientation::of(reader.info().exif_metadata.as_deref());
     Ok(orientation.upright(grey(&bytes, &frame)))
 }
 
-/// A decoder that leaves out what is not used: a colour profile or a text can unpack to a thousand times its size.
+/// A decoder that skips unused chunks: a colour profile or a text can unpack to a thousand times its size.
 fn decoder(png: &[u8]) -> Decoder<Cursor<&[u8]>> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(png), Limits { bytes: 8 * PIXELS_MAX });
     // Expands palettes to colours, fewer bits than eight to eight, and a transparent colour to an alpha channel.

@@ -8,19 +8,20 @@ mod tests;
 
 use thiserror::Error;
 
-/// Largest number of pixels of a picture, and of all pictures of a scene: 64 million, so that its grey values take at most 256 MiB.
+/// Largest number of pixels in a picture, and in all pictures of a scene: 64 million, whose grey values take at most
+/// 256 MiB.
 pub(super) const PIXELS_MAX: usize = SQUARE_MAX * SQUARE_MAX;
-/// Sides of a square picture with as many pixels.
+/// Side of a square picture of that size, in pixels.
 const SQUARE_MAX: usize = 1 << 13;
 /// Weights of red, green and blue in grey (luma of ITU-R BT.709).
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
 /// The largest sample of 16 bits.
 const WHITE: u16 = u16::MAX;
-/// A step of 8 bits in steps of 16.
+/// An 8-bit step in 16-bit steps.
 const STEP: f32 = 257.0;
-/// What is said of a picture whose colours were turned to grey.
+/// The note about a picture converted to grey.
 const COLOUR: &str = "colour turned to grey by luminance";
-/// One over the part of a picture's samples that `levels = "stretch"` leaves darker than black, and lighter than white.
+/// Reciprocal of the fraction of samples that `levels = "stretch"` clips to black, and to white.
 const STRETCHED_PART: usize = 100;
 
 /// A picture as grey values from 0 (black) to 255 (white), row after row from the top left.
@@ -29,14 +30,14 @@ pub(super) struct Picture {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) grey: Vec<f32>,
-    /// What white below the picture adds to each grey value; empty for an opaque picture. The grey values are those over
+    /// Contribution of a white ground to each grey value; empty for an opaque picture. The grey values are those over
     /// black.
     pub(super) white_below: Vec<f32>,
     /// The conversions to grey, as text for a person.
     pub(super) conversions: Vec<String>,
 }
 
-/// What shows through a transparent picture.
+/// The ground behind a transparent picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Ground {
     #[default]
@@ -61,12 +62,12 @@ pub(super) enum PictureError {
     TooLargeTogether { width: usize, height: usize },
 }
 
-/// Checks the bytes of a picture before a scene names it, and returns its width and height, in pixels, as it is played:
-/// a photograph upright.
+/// Checks the bytes of a picture before a scene names it. Returns its width and height in pixels, as played: a
+/// photograph is upright.
 ///
 /// # Errors
 ///
-/// They cannot be played: a sentence without a subject says why, and what to do.
+/// Fails if the picture cannot be played. The text, a sentence without a subject, states the reason and what to do.
 pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
     Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
@@ -83,7 +84,7 @@ impl Picture {
         }
     }
 
-    /// The opaque picture: over black or white, and then with black and white exchanged.
+    /// Lays the picture over black or white, and then inverts it if asked.
     pub(super) fn laid_over(mut self, ground: Ground, is_inverted: bool) -> Self {
         if !self.white_below.is_empty() {
             let word = match ground {
@@ -107,9 +108,9 @@ impl Picture {
         self
     }
 
-    /// The picture with its levels stretched as its samples on a board demand: of these, a hundredth is then black or
-    /// darker, and a hundredth is white or lighter. Pixels are means over less than samples are, so that they may lie
-    /// below black and above white. A picture whose samples have one grey stays as it is.
+    /// Stretches the levels according to the picture's samples on a board: a hundredth of them is then black or darker,
+    /// and a hundredth is white or lighter. A pixel averages a smaller area than a sample does, and may thus lie below
+    /// black or above white. A picture whose samples have one grey stays as it is.
     pub(super) fn stretched(mut self, mut samples: Vec<u8>) -> Self {
         let Some(last) = samples.len().checked_sub(1) else { return self };
         let mut at = |place: usize| f32::from(*samples.select_nth_unstable(place).1);

@@ -1,13 +1,13 @@
-//! Which way up a camera was held: the tag `Orientation` of EXIF (CIPA DC-008, section 4.6.5; TIFF 6.0, tag 274).
+//! Orientation of a photograph: the EXIF tag `Orientation` (CIPA DC-008, section 4.6.5; TIFF 6.0, tag 274).
 
 use exif::{In, Reader, Tag};
 
 use super::Picture;
 
-/// The conversion of a picture that was turned.
+/// The note about a rotated picture.
 const UPRIGHT: &str = "turned upright, as its camera noted (EXIF)";
 
-/// How the pixels of a file lie in the picture that the camera saw.
+/// Position of a file's pixels in the picture that the camera saw.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Orientation {
     /// Rows of the picture are columns of the file.
@@ -19,8 +19,8 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// Reads the orientation from the bytes of an EXIF block, from its TIFF header on. Without one, or if it cannot be
-    /// read, the file is upright.
+    /// Reads the orientation from an EXIF block that starts at its TIFF header. Defaults to upright if it is absent or
+    /// unreadable.
     pub(super) fn of(exif: Option<&[u8]>) -> Self {
         let read = |exif: &[u8]| Reader::new().read_raw(exif.to_vec()).ok();
         let number =
@@ -53,7 +53,7 @@ impl Orientation {
             row * file_width + column
         };
         let upright = |values: &[f32]| -> Vec<f32> {
-            // An opaque picture has no values of what shows through it.
+            // An opaque picture has no ground contribution.
             let count = if values.is_empty() { 0 } else { width * height };
             (0..count).map(|place| values.get(pixel(place)).copied().unwrap_or_default()).collect()
         };

@@ -1,4 +1,4 @@
-//! The reference: the friction that a program defines, evaluated in `f64` and independently of the firmware.
+//! The reference: the friction defined by a program, evaluated in `f64` and independently of the firmware.
 
 mod shape;
 mod stroke;
@@ -13,10 +13,10 @@ pub use stroke::{Context, StrokeReference, direction_of};
 use crate::Program;
 use crate::kinds::{self, Field};
 
-/// Evaluates the friction that a program defines at a place on the screen.
+/// Evaluates the friction defined by a program at a place on the screen.
 ///
-/// It uses the numbers of the compiled program: frictions as rounded to `f32`, pictures as resampled. The result is not
-/// clamped to the range that the drive can reach.
+/// It uses the numbers of the compiled program: frictions rounded to `f32`, and resampled pictures. The result is not
+/// clamped to the reachable range.
 #[derive(Clone, Debug)]
 pub struct Reference {
     natural_friction_n: f64,
@@ -29,7 +29,7 @@ pub(crate) struct Piece {
     pub(crate) shape: Shape,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
-    /// A layer that is off is as if it were not there.
+    /// A layer that is off has no effect.
     pub(crate) is_on: bool,
     /// [`Context::begun_s`] of the layer.
     begun_s: f64,
@@ -49,7 +49,7 @@ impl Reference {
         Self { natural_friction_n, pieces }
     }
 
-    /// The program as it begins to play: layers with `start = "off"` are off.
+    /// The reference at the start of a play: layers with `start = "off"` are off.
     pub fn at_start(program: &Program) -> Self {
         Self::new(program).with_only(|layer| program.start.get(layer).is_none_or(|setting| setting.on))
     }
@@ -60,7 +60,7 @@ impl Reference {
     }
 
     /// Electric friction at a place, in metres from the screen's top left corner, in newtons. It may be out of reach.
-    /// It is not-a-number where a record names a bitmap that the program does not have.
+    /// It is NaN where a record refers to a bitmap that the program lacks.
     ///
     /// Time and speed are 0, and there are no clicks and no stream; [`StrokeReference`] includes these.
     pub fn electric_friction_n(&self, x_m: f64, y_m: f64) -> f64 {
@@ -83,7 +83,7 @@ impl Reference {
         self
     }
 
-    /// The same reference with only those layers on for whose index, from the bottom, `is_on` is true.
+    /// The same reference with only the layers on whose index from the bottom satisfies `is_on`.
     #[must_use]
     pub fn with_only(mut self, is_on: impl Fn(usize) -> bool) -> Self {
         for (layer, piece) in self.pieces.iter_mut().enumerate() {
@@ -97,7 +97,7 @@ impl Reference {
         StrokeReference::new(self)
     }
 
-    /// Electric friction in a context. `click_n` returns the friction that a layer's click adds.
+    /// Electric friction in a context. `click_n` returns the friction added by a layer's click.
     fn at(&self, context: &Context, click_n: impl Fn(usize) -> f64) -> f64 {
         let above = self.stack_at(context.x_m, context.y_m, |_, piece| piece.is_on).filter(|(_, piece)| piece.is_on);
         above.fold(0.0, |below_n, (number, piece)| {
@@ -113,21 +113,21 @@ impl Reference {
         })
     }
 
-    /// The layers that have an effect at a place in metres, by their index from the bottom, from the topmost down: those
-    /// that are on and cover it, and that no layer above replaces.
+    /// Indices from the bottom of the layers with an effect at a place in metres, from the topmost down: on, covering
+    /// the place, and not replaced by a layer above.
     pub fn visible_at(&self, x_m: f64, y_m: f64) -> impl Iterator<Item = usize> {
         let visible = self.stack_at(x_m, y_m, |_, piece| piece.is_on).rev().filter(|(_, piece)| piece.is_on);
         visible.map(|(number, _)| number)
     }
 
-    /// The layers that cover a place in metres, by their index from the bottom, from the topmost down, as far as none
-    /// that is not in `off` replaces them.
+    /// Indices from the bottom of the layers that cover a place in metres, from the topmost down, ending with the first
+    /// one that replaces the layers below and is not in `off`.
     pub(crate) fn covering_at(&self, x_m: f64, y_m: f64, off: &[usize]) -> impl Iterator<Item = usize> {
         self.stack_at(x_m, y_m, |layer, _| !off.contains(&layer)).rev().map(|(layer, _)| layer)
     }
 
-    /// The layers that cover a place, with their index, from bottom to top, without those below one that replaces them
-    /// and is on.
+    /// The layers that cover a place, with their indices, from bottom to top, starting with the last one that is on and
+    /// replaces the layers below.
     fn stack_at(
         &self,
         x_m: f64,
@@ -140,8 +140,8 @@ impl Reference {
         pieces().skip(pieces().rposition(hides).unwrap_or(0)).filter(move |(_, piece)| covers(piece))
     }
 
-    /// Left, top, right and bottom of the smallest rectangle around a layer, in metres, infinite for a layer that covers
-    /// the screen; `None` for an index beyond the topmost layer.
+    /// Left, top, right and bottom of a layer's bounding rectangle, in metres, infinite for a layer that covers the
+    /// screen; `None` for an index above the topmost layer.
     pub fn bounds_m(&self, layer: usize) -> Option<[f64; 4]> {
         self.pieces.get(layer).map(|piece| piece.shape.bounds_m())
     }
@@ -151,7 +151,7 @@ impl Reference {
         self.pieces.len()
     }
 
-    /// Whether friction changes under a finger at rest: a layer vibrates or follows a stream.
+    /// Whether friction changes under a finger at rest because a layer vibrates or follows a stream.
     pub fn changes_by_itself(&self) -> bool {
         self.pieces.iter().any(|piece| piece.is_streamed || piece.field.largest_over_time_n().is_some())
     }
@@ -163,7 +163,7 @@ impl Reference {
 }
 
 impl Piece {
-    /// Whether the layers below have no effect where this layer is.
+    /// Whether the layer hides the layers below it.
     pub(crate) fn hides_below(&self) -> bool {
         self.blend == Blend::Replace && !self.is_streamed
     }

@@ -70,7 +70,7 @@ impl Shape {
         }
     }
 
-    /// Left, top, right and bottom of the smallest rectangle around it, infinite for everywhere.
+    /// Left, top, right and bottom of the bounding rectangle, infinite for everywhere.
     pub(crate) fn bounds_m(&self) -> [f64; 4] {
         match self {
             Self::Everywhere => [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY],

@@ -1,8 +1,8 @@
-//! The reference along a stroke. Clicks depend on the finger's earlier places.
+//! The reference along a stroke, in which clicks depend on earlier places of the finger.
 
 use super::Reference;
 
-/// Evaluation context: the finger's place and velocity, the time, and the stream's sample.
+/// State at which the reference is evaluated: place and velocity of the finger, time, and stream sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Context {
     /// Place from the screen's left edge, m.
@@ -11,29 +11,29 @@ pub struct Context {
     pub y_m: f64,
     /// Time of the tick since the board's power-on, s.
     pub t_s: f64,
-    /// Time at which the host switched the layer on that is evaluated, since the board's power-on, s; 0 if it has not.
+    /// Time at which the host switched the evaluated layer on, since the board's power-on, s; 0 if it has not.
     pub begun_s: f64,
     /// Sliding speed, m/s.
     pub speed_m_per_s: f64,
-    /// Direction of the slide along x and y, a vector of length 1; zeros for a finger without a direction, under which
-    /// friction is the mean over all of them.
+    /// Unit vector of the sliding direction along x and y; zeros for a finger without a direction, for which friction
+    /// is the mean over all directions.
     pub direction: [f64; 2],
     /// The stream's sample, from 0 to 1.
     pub stream: f64,
-    /// Weight of the stream's layers, from 0 without a stream to 1.
+    /// Weight of the stream's layers, from 0 (no stream) to 1.
     pub stream_weight: f64,
 }
 
-/// The direction of a step along x and y, as [`Context`] has it; zeros for a step of length 0.
+/// Direction of a step along x and y, as in [`Context`]; zeros for a step of length 0.
 pub fn direction_of([x_m, y_m]: [f64; 2]) -> [f64; 2] {
     let length_m = libm::hypot(x_m, y_m);
     if length_m > 0.0 { [x_m / length_m, y_m / length_m] } else { [0.0; 2] }
 }
 
-/// The reference along a stroke, evaluated context by context in the order of time.
+/// The reference along a stroke, evaluated at successive times.
 ///
-/// A click begins in the first context on the other side of an edge or inside a button. With one context a tick, this
-/// is the tick in which the board detects the crossing.
+/// A click begins in the first context beyond an edge or inside a button. With one context per tick, the board detects
+/// the crossing in the same tick.
 #[derive(Clone, Debug)]
 pub struct StrokeReference {
     reference: Reference,
@@ -45,7 +45,7 @@ pub struct StrokeReference {
 #[derive(Clone, Debug)]
 struct ClickingLayer {
     layer: usize,
-    /// The finger's side of an edge, or whether it was inside a button, in the previous context; `None` outside.
+    /// The finger's side of an edge, or whether it was inside a button, in the previous context; `None` if unknown.
     side: Option<bool>,
     clicked_at_s: Option<f64>,
 }
@@ -58,7 +58,7 @@ impl StrokeReference {
         Self { reference, clicking, touching: false }
     }
 
-    /// The same reference without the clicks of all other layers.
+    /// The same reference with the clicks of one layer only.
     #[must_use]
     pub fn with_clicks_of(mut self, layer: usize) -> Self {
         self.clicking.retain(|clicking| clicking.layer == layer);
@@ -70,7 +70,7 @@ impl StrokeReference {
         self.reference.natural_friction_n
     }
 
-    /// Electric friction in the next context of the stroke, in newtons, as in [`Reference::electric_friction_n`].
+    /// Electric friction in the stroke's next context, in newtons, as in [`Reference::electric_friction_n`].
     pub fn electric_friction_n(&mut self, context: &Context) -> f64 {
         for layer in &mut self.clicking {
             layer.follow(&self.reference, context, self.touching);
@@ -83,8 +83,8 @@ impl StrokeReference {
         self.reference.at(context, click_n)
     }
 
-    /// Switches a layer on or off at a time since the board's power-on, s, by its index from the bottom, and sets its
-    /// gain.
+    /// Switches a layer on or off, and sets its gain. `layer` is its index from the bottom, `t_s` the time since the
+    /// board's power-on.
     pub fn set_layer(&mut self, layer: usize, on: bool, gain: f64, t_s: f64) {
         if let Some(piece) = self.reference.pieces.get_mut(layer) {
             if on && !piece.is_on {
@@ -120,7 +120,7 @@ impl ClickingLayer {
         self.side = side;
     }
 
-    /// Friction that the last click still adds, N; `None` when the click is over.
+    /// Friction that the last click still adds, N; `None` when it is over.
     fn click_n(&self, reference: &Reference, t_s: f64) -> Option<f64> {
         let click = reference.pieces.get(self.layer)?.field.click()?;
         let left = 1.0 - (t_s - self.clicked_at_s?) / f64::from(click.decay_s);

@@ -1,4 +1,4 @@
-//! Scenarios: what a host does with a board, what goes wrong meanwhile, and what has to be seen of it.
+//! Scenarios: actions of a host, faults, and the expected outcome.
 
 mod read;
 pub(crate) mod tables;
@@ -11,30 +11,30 @@ use frixel_wire::fault::{Fault, State};
 use crate::compile_error::CompileError;
 use crate::fields::read_text;
 
-/// A scenario, as its file says it (`docs/scenarios.md`). A host connects and plays the scene; times count from there.
+/// A scenario file (`docs/scenarios.md`). A host connects and plays the scene; times count from the start of the play.
 ///
-/// A fraction is of what the board reaches with the scene, so that a scenario fits every board.
+/// Amplitudes are fractions of the board's reach in the scene, so that a scenario fits every board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// The name of the file, as it was given.
     pub file: String,
-    /// What the scenario shows; empty if the file does not say it.
+    /// Description; empty if the file has none.
     pub about: String,
     /// The scene's file, relative to the folder of the scenario.
     pub scene: String,
-    /// How long it runs after the play began, s.
+    /// Duration after the start of the play, s.
     pub seconds: f64,
-    /// Seed of all that is random.
+    /// Seed of all random effects.
     pub seed: u64,
-    /// Whether the world has every effect of amplifier, finger and touch source.
+    /// Whether amplifier, finger and touch source are simulated with all their effects.
     pub is_realistic: bool,
-    /// Where the finger goes; `None` for a sweep over the screen.
+    /// Path of the finger; `None` for a sweep over the screen.
     pub stroke: Option<StraightStroke>,
-    /// What the host does, in the order of time.
+    /// Actions of the host, in chronological order.
     pub commands: Vec<ScenarioCommand>,
-    /// What goes wrong, in the order of time.
+    /// Faults, in chronological order.
     pub faults: Vec<ScenarioFault>,
-    /// What has to be seen.
+    /// Expected outcomes.
     pub expectations: Vec<Expectation>,
 }
 
@@ -62,43 +62,43 @@ impl Scenario {
         std::iter::once(self.scene.as_str()).chain(replacing)
     }
 
-    /// How often the board is reset.
+    /// Number of board resets.
     pub fn resets(&self) -> usize {
         let is_reset = |cause| matches!(cause, Cause::Rig(RigFault::Reset | RigFault::OptionBytes));
         self.faults.iter().filter(|fault| is_reset(fault.cause)).count()
     }
 }
 
-/// A stroke along a line at constant speed, again and again.
+/// A straight stroke at constant speed, repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StraightStroke {
-    /// Where it begins, mm.
+    /// Start, mm.
     pub from_mm: [f64; 2],
-    /// Where it ends, mm.
+    /// End, mm.
     pub to_mm: [f64; 2],
-    /// Its speed, mm/s.
+    /// Speed, mm/s.
     pub speed_mm_per_s: f64,
 }
 
-/// Something that the host does.
+/// A timed action of the host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioCommand {
-    /// When it begins, ms. A command that takes longer than until the next one delays it.
+    /// Start time, ms. A command that is still running delays the next one.
     pub at_ms: f64,
-    /// Its name, for expectations.
+    /// Name, for expectations.
     pub name: Option<String>,
     /// Line of the file, from one.
     pub line: usize,
-    /// What the host does.
+    /// The action.
     pub action: Action,
 }
 
-/// What a host does.
+/// Action of a host.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Connects again, after the connection was given up.
+    /// Reconnects after giving up the connection.
     Connect,
-    /// Uploads the scenario's scene again, arms the board and plays.
+    /// Uploads the scenario's scene again, arms the board and plays it.
     Play,
     /// Uploads the scenario's scene and commits it.
     Upload,
@@ -106,121 +106,121 @@ pub enum Action {
     Stop,
     /// Clears a latched fault.
     ClearFault,
-    /// Plays another scene in place of the one that plays.
+    /// Plays another scene in place of the current one.
     Replace {
         /// Its file.
         scene: String,
     },
-    /// Switches a layer on for a time.
+    /// Switches a layer on temporarily.
     Trigger {
-        /// Its name or its number.
+        /// Name or number of the layer.
         layer: String,
-        /// How long, in s; `None` for as long as its pattern lasts.
+        /// Duration, s; `None` for the duration of the layer's pattern.
         duration_s: Option<f64>,
     },
     /// Sets the gain of a layer.
     SetLayer {
-        /// Its name or its number.
+        /// Name or number of the layer.
         layer: String,
         /// The gain.
         gain: Option<f64>,
     },
-    /// Does nothing, not even ping, for a time in ms.
+    /// Suspends the host, including its pings.
     Hang {
-        /// How long, in ms.
+        /// Duration, ms.
         ms: f64,
     },
-    /// Is gone without a word, as a process that was killed.
+    /// Ends the host without closing the connection, like a killed process.
     Die,
-    /// Another program says hello on the same line.
+    /// Another program sends a hello on the same line.
     OtherClient,
 }
 
-/// A fault with its time.
+/// A timed fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioFault {
-    /// When it begins, ms.
+    /// Start time, ms.
     pub at_ms: f64,
-    /// How long it lasts, in ms; `None` until the end.
+    /// Duration, ms; `None` until the end.
     pub for_ms: Option<f64>,
-    /// Its name, for expectations.
+    /// Name, for expectations.
     pub name: Option<String>,
     /// Line of the file, from one.
     pub line: usize,
-    /// What goes wrong.
+    /// Cause of the fault.
     pub cause: Cause,
 }
 
-/// What goes wrong.
+/// Cause of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// On the serial line.
+    /// A damaged serial line.
     Line {
-        /// To the board, and to the host.
+        /// Whether the direction is affected: to the board, to the host.
         directions: [bool; 2],
-        /// What happens to the bytes.
+        /// Kind of damage.
         damage: LineDamage,
     },
-    /// At the board, or around it.
+    /// A fault at or around the board.
     Rig(RigFault),
-    /// The DAC holds a voltage, as a fraction of the largest one that the scene may drive.
+    /// The DAC is stuck at a voltage.
     DacStuck {
-        /// At most full scale is held.
+        /// Fraction of the scene's largest voltage, limited to full scale.
         fraction: f64,
     },
     /// The board's tick count wraps around after a time.
     TickCountWraps {
-        /// In ms.
+        /// Time, ms.
         in_ms: f64,
     },
 }
 
-/// What happens to bytes on the line.
+/// Damage to the bytes on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineDamage {
-    /// All are lost: the cable is cut.
+    /// All bytes are lost, as with a cut cable.
     Cut,
-    /// Some are damaged.
+    /// Some bytes are corrupted.
     Noise(NoiseConfig),
-    /// All arrive later, by a time in ms.
+    /// All bytes are delayed.
     Late {
-        /// How late, in ms.
+        /// Delay, ms.
         ms: f64,
     },
 }
 
-/// What has to be seen in a span of time.
+/// Expected outcome in an interval of time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// Line of the file, from one.
     pub line: usize,
-    /// The command or fault from which times count; `None` for the play with which the scenario begins.
+    /// The command or fault that times are relative to; `None` for the start of the first play.
     pub after: Option<String>,
-    /// First time, in ms.
+    /// Start of the interval, ms.
     pub from_ms: f64,
-    /// Last time, in ms; `None` for the end of the scenario.
+    /// End of the interval, ms; `None` for the end of the scenario.
     pub to_ms: Option<f64>,
-    /// What has to be seen.
+    /// The condition.
     pub seen: Seen,
 }
 
-/// What has to be seen.
+/// Condition of an expectation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Seen {
-    /// DAC code zero in every tick.
+    /// DAC code is zero in every tick.
     OutputZero,
-    /// DAC code zero and amplifier disabled in every tick.
+    /// DAC code is zero and the amplifier is disabled in every tick.
     OutputOff,
-    /// A code other than zero at least once, and at least once in every 10 ms.
+    /// DAC code is nonzero at least once, and at least once in every 10 ms.
     OutputDriven,
-    /// The electrode's voltage is below this fraction of the largest one that the scene may drive, in every tick.
+    /// Electrode voltage is below this fraction of the scene's largest voltage in every tick.
     ElectrodeBelow(f64),
-    /// The mean of the electric friction felt while the finger is down lies between these fractions of the largest.
+    /// Mean electric friction felt while the finger is down is between these fractions of the largest.
     Friction([f64; 2]),
-    /// The board has said of its state, by the end of the span.
+    /// The board has reported this state by the end of the interval.
     State(State),
-    /// The board has said of its fault, by the end of the span.
+    /// The board has reported this fault by the end of the interval.
     Fault(Fault),
-    /// A command or the connection fails with a sentence that has these words.
+    /// A command or the connection fails with a message that contains this text.
     Error(String),
 }

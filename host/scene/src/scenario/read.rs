@@ -13,7 +13,7 @@ use crate::log::Log;
 use crate::mistake::{FieldMistake, FileMistake, Mistake};
 use crate::nearest::Nearest;
 
-/// Most commands, faults and expectations of a scenario.
+/// Largest number of commands, faults and expectations in a scenario.
 const ENTRIES_MAX: usize = 1_000;
 
 pub(super) const STATES: [(&str, State); 4] =
@@ -85,13 +85,13 @@ fn place(fields: &mut Fields, log: &mut Log, field: &FieldSpec) -> Option<[f64; 
     pair
 }
 
-/// The names of commands and faults, also of those that have mistakes.
+/// Names of commands and faults, including those with mistakes.
 struct Names {
     /// Each name with its place in the file.
     given: Vec<(usize, String)>,
     /// The same names.
     known: HashSet<String>,
-    /// Whether no name is hidden by a mistake.
+    /// Whether all names are known, with none hidden by a mistake.
     are_known: bool,
 }
 
@@ -106,7 +106,7 @@ impl Names {
         name
     }
 
-    /// Reports each name that stands in the file before.
+    /// Reports repeated names.
     fn check(&mut self, log: &mut Log) {
         self.given.sort_by_key(|(place, _)| *place);
         let mut first: HashMap<&str, usize> = HashMap::new();
@@ -119,7 +119,7 @@ impl Names {
         }
     }
 
-    /// Reports an `after` that is no name.
+    /// Reports an `after` that refers to an unknown name.
     fn check_after(&self, found: &str, place: usize, log: &mut Log) {
         if !self.are_known || self.known.contains(found) {
             return;
@@ -138,7 +138,7 @@ fn line_of(fields: &Fields, log: &Log) -> usize {
     log.source().line_and_column(fields.table_place()).0
 }
 
-/// The time of a command or a fault, in a scenario of so many seconds.
+/// Start time of a command or a fault, checked against the scenario's duration.
 fn at_ms(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<f64> {
     let place = fields.place(when::AT_MS.name);
     let at_ms = fields.number(log, &when::AT_MS);
@@ -150,7 +150,7 @@ fn at_ms(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<f64
     at_ms
 }
 
-/// What a command does, before its fields are read.
+/// Action of a command, before its fields are read.
 #[derive(Clone, Copy)]
 pub(super) enum Verb {
     Plain(fn() -> Action),
@@ -207,7 +207,7 @@ fn scenario_command(
     Some(ScenarioCommand { at_ms: at_ms?, name, line, action: action? })
 }
 
-/// What goes wrong, before its fields are read.
+/// Cause of a fault, before its fields are read.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     Cut,
@@ -284,7 +284,7 @@ fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
     Some(Cause::Line { directions, damage: damage? })
 }
 
-/// What an output is expected to be.
+/// Expected output.
 #[derive(Clone, Copy)]
 enum Output {
     Zero,
@@ -292,7 +292,7 @@ enum Output {
     Driven,
 }
 
-/// The expectations of one table, which share their span of time.
+/// The expectations of one table, which share an interval of time.
 fn expected(mut fields: Fields, names: &Names, log: &mut Log) -> Vec<Expectation> {
     let (line, before) = (line_of(&fields, log), log.mistakes());
     let after_place = fields.place(expect::AFTER.name);

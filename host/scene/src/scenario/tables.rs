@@ -8,7 +8,7 @@ use crate::tables::{number, word};
 /// Longest scenario, and longest time in one: an hour.
 const SECONDS_MAX: f64 = 3_600.0;
 const TIME_MS: Range = Range::new(0.0, 1e3 * SECONDS_MAX, " ms");
-/// Of what the board reaches. A fault may go beyond.
+/// Fractions of the board's reach. A fault may exceed it.
 const FRACTION: Range = Range::new(-10.0, 10.0, "");
 const SHARE: Range = Range::new(0.0, 1.0, "");
 
@@ -26,9 +26,9 @@ pub(super) mod file {
     pub(crate) const SCENE: FieldSpec =
         FieldSpec::new("scene", Holds::Text, Mistake, "the scene's file, relative to this file's folder");
     pub(crate) const SECONDS: FieldSpec =
-        number("seconds", Range::new(0.001, SECONDS_MAX, " s"), Mistake, "how long it runs after the play began");
+        number("seconds", Range::new(0.001, SECONDS_MAX, " s"), Mistake, "duration after the start of the play");
     pub(crate) const SEED: FieldSpec =
-        FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 1e15, "")), Number(1.0), "seed of all that is random");
+        FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 1e15, "")), Number(1.0), "seed of all random effects");
     pub(crate) const WORLD: FieldSpec = word(
         "world",
         Means("`\"ideal\"`"),
@@ -37,13 +37,13 @@ pub(super) mod file {
     pub(crate) const STROKE: FieldSpec = FieldSpec::new(
         "stroke",
         Holds::Table,
-        Means("a sweep over the screen in 3 s, again and again"),
-        "where the finger goes from each `play` on",
+        Means("a repeated sweep over the screen in 3 s"),
+        "path of the finger from each `play` on",
     );
     pub(crate) const COMMAND: FieldSpec =
-        FieldSpec::new("command", Holds::Tables, Means("none"), "what the host does, in the order of time");
+        FieldSpec::new("command", Holds::Tables, Means("none"), "actions of the host, in chronological order");
     pub(crate) const FAULT: FieldSpec = FieldSpec::new("fault", Holds::Tables, Means("none"), "what goes wrong");
-    pub(crate) const EXPECT: FieldSpec = FieldSpec::new("expect", Holds::Tables, Means("none"), "what has to be seen");
+    pub(crate) const EXPECT: FieldSpec = FieldSpec::new("expect", Holds::Tables, Means("none"), "expected outcomes");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] =
         &[SCENARIO, ABOUT, SCENE, SECONDS, SEED, WORLD, STROKE, COMMAND, FAULT, EXPECT];
@@ -59,16 +59,17 @@ pub(super) mod stroke {
     pub(crate) const TO_MM: FieldSpec =
         FieldSpec::new("to_mm", Holds::Numbers(PLACE_MM), Mistake, "where it ends; 0.2 s later it begins again");
     pub(crate) const SPEED_MM_PER_S: FieldSpec =
-        number("speed_mm_per_s", Range::new(0.1, 10_000.0, " mm/s"), Number(100.0), "how fast the finger goes");
+        number("speed_mm_per_s", Range::new(0.1, 10_000.0, " mm/s"), Number(100.0), "sliding speed");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] = &[FROM_MM, TO_MM, SPEED_MM_PER_S];
 }
 
-/// What commands, faults and expectations share.
+/// Fields shared by commands, faults and expectations.
 pub(super) mod when {
     use super::{FieldSpec, Means, Mistake, TIME_MS, number, text};
 
-    pub(crate) const AT_MS: FieldSpec = number("at_ms", TIME_MS, Mistake, "when, in ms since the play began");
+    pub(crate) const AT_MS: FieldSpec =
+        number("at_ms", TIME_MS, Mistake, "start time, in ms since the start of the play");
     pub(crate) const NAME: FieldSpec = text("name", "a name, for `after` of an expectation");
     pub(crate) const FOR_MS: FieldSpec = number("for_ms", TIME_MS, Means("until the end"), "how long");
     #[cfg(test)]
@@ -84,8 +85,7 @@ pub(super) mod command {
         FieldSpec::new("layer", Holds::Text, Mistake, "the layer's name, or its number as a text");
     pub(crate) const GAIN: FieldSpec =
         number("gain", Range::new(-100.0, 100.0, ""), Means("as it is"), "the layer's gain");
-    pub(crate) const SCENE: FieldSpec =
-        FieldSpec::new("scene", Holds::Text, Mistake, "the file of the scene that comes");
+    pub(crate) const SCENE: FieldSpec = FieldSpec::new("scene", Holds::Text, Mistake, "file of the next scene");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] = &[DO, LAYER, GAIN, SCENE];
 }
@@ -96,12 +96,11 @@ pub(super) mod fault {
 
     pub(crate) const CAUSE: FieldSpec = word("cause", Mistake, "what goes wrong");
     pub(crate) const LINE: FieldSpec = word("line", Means("`\"both\"`"), "`\"to-board\"`, `\"to-host\"` or `\"both\"`");
-    pub(crate) const SHARE_OF: FieldSpec = number("share", SHARE, Mistake, "part of the bytes, or of the bits");
-    pub(crate) const BY_MS: FieldSpec = number("by_ms", Range::new(0.0, 10_000.0, " ms"), Mistake, "how late");
+    pub(crate) const SHARE_OF: FieldSpec = number("share", SHARE, Mistake, "fraction of the bytes, or of the bits");
+    pub(crate) const BY_MS: FieldSpec = number("by_ms", Range::new(0.0, 10_000.0, " ms"), Mistake, "delay");
     pub(crate) const BY_MM: FieldSpec =
-        number("by_mm", Range::new(-2_000.0, 2_000.0, " mm"), Mistake, "how far every second report is off in x");
-    pub(crate) const GAIN: FieldSpec =
-        number("gain", Range::new(-10.0, 10.0, ""), Mistake, "what is left of the voltage");
+        number("by_mm", Range::new(-2_000.0, 2_000.0, " mm"), Mistake, "x offset of every second report");
+    pub(crate) const GAIN: FieldSpec = number("gain", Range::new(-10.0, 10.0, ""), Mistake, "factor on the voltage");
     pub(crate) const FRACTION: FieldSpec = number(
         "fraction",
         FRACTIONS,
@@ -119,9 +118,8 @@ pub(super) mod expect {
 
     pub(crate) const AFTER: FieldSpec =
         text("after", "name of a command or fault: times count from its end or its start");
-    pub(crate) const FROM_MS: FieldSpec =
-        number("from_ms", TIME_MS, Number(0.0), "first time at which it has to be so");
-    pub(crate) const TO_MS: FieldSpec = number("to_ms", TIME_MS, Means("the end"), "last time");
+    pub(crate) const FROM_MS: FieldSpec = number("from_ms", TIME_MS, Number(0.0), "start of the interval");
+    pub(crate) const TO_MS: FieldSpec = number("to_ms", TIME_MS, Means("the end"), "end of the interval");
     pub(crate) const OUTPUT: FieldSpec = word(
         "output",
         Means(""),
@@ -132,7 +130,8 @@ pub(super) mod expect {
         "electrode_below_fraction",
         FRACTION,
         Means(""),
-        "the electrode's voltage either way, in every tick, as a fraction of the largest one that the scene may drive",
+        "limit of the absolute electrode voltage in every tick, as a fraction of the largest one that the scene may \
+         drive",
     );
     pub(crate) const FRICTION_FRACTION: FieldSpec = FieldSpec::new(
         "friction_fraction",
@@ -142,11 +141,11 @@ pub(super) mod expect {
          largest",
     );
     pub(crate) const STATE: FieldSpec =
-        word("state", Means(""), "what the board has said of its state, by the last time");
+        word("state", Means(""), "state reported by the board by the end of the interval");
     pub(crate) const FAULT: FieldSpec =
-        word("fault", Means(""), "what the board has said of its fault, by the last time");
+        word("fault", Means(""), "fault reported by the board by the end of the interval");
     pub(crate) const ERROR: FieldSpec =
-        text("error", "words of a sentence with which a command or the connection fails in that time");
+        text("error", "text in the message with which a command or the connection fails in that interval");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] =
         &[AFTER, FROM_MS, TO_MS, OUTPUT, ELECTRODE_BELOW_FRACTION, FRICTION_FRACTION, STATE, FAULT, ERROR];

@@ -1,5 +1,5 @@
-//! A JSON schema of the scene file, for editors. It is made from the fields that the parser reads: the parser is given
-//! texts with only those fields that determine which other fields are known.
+//! JSON schema of the scene file, for editors, derived from the fields that the parser reads. The parser receives texts
+//! with only those fields that determine which others are known.
 
 pub(super) mod variant;
 
@@ -11,12 +11,12 @@ use super::stack::LAYER_FIELDS;
 use super::tables::layer::{KIND, NAME};
 use variant::{Tables, Variant, variants};
 
-/// The tables of a scene, empty, so that the parser reads their fields.
+/// A scene with empty tables, so that the parser reads their fields.
 const EMPTY: &str =
     "version = 1\nscreen = { coating = [{}] }\nfinger = {}\ndrive = {}\ncarrier = {}\ntouch = {}\ndesign = {}\n";
 /// The tables that are the same in all scenes.
 const SHARED: [&str; 4] = ["drive", "carrier", "touch", "design"];
-/// The tables that may complete the layers of a scene, which is then of the schema `shared_layer` for each layer.
+/// The tables that may complete a scene's layers; each layer of such a scene has the schema `shared_layer`.
 const COMPLETING: [&str; 2] = ["defaults", "include"];
 
 /// The schema (draft 7, which editors support), as a text that ends in a line feed.
@@ -42,7 +42,7 @@ pub fn json_schema() -> String {
     serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
 }
 
-/// The schemas of a scene: with whole layers, and with layers that may have fields in `[defaults]` or in another file.
+/// Schemas of a scene: with complete layers, and with layers completed by `[defaults]` or another file.
 fn scenes() -> [Value; 2] {
     let [mut whole, mut shared] = ["layer", "shared_layer"].map(scene);
     if let Some(properties) = whole.pointer_mut("/properties").and_then(Value::as_object_mut) {
@@ -55,7 +55,7 @@ fn scenes() -> [Value; 2] {
     [whole, shared]
 }
 
-/// A layer, of which any field may be missing, or the fields that layers share.
+/// Schema of a layer whose fields are all optional, or of the fields that layers share.
 fn shared_layer(is_layer: bool) -> Value {
     let mut properties = Map::new();
     for known in LAYER_FIELDS.iter().filter(|known| is_layer || known.field != NAME) {
@@ -69,7 +69,7 @@ fn shared_layer(is_layer: bool) -> Value {
     json!({ "type": "object", "properties": properties, "additionalProperties": false })
 }
 
-/// The schema of a scene whose layers are of the schema `layer`.
+/// Schema of a scene whose layers have the schema `layer`.
 fn scene(layer: &str) -> Value {
     let tables = describe(EMPTY);
     let Some(root) = tables.iter().find(|table| table.key.is_empty()) else { return Value::Null };
@@ -99,18 +99,18 @@ fn scene(layer: &str) -> Value {
     json!({ "type": "object", "properties": properties, "required": root.required, "additionalProperties": false })
 }
 
-/// The schema of a table or a list of tables.
+/// Schema of a table or a list of tables.
 fn one_or_more(table: &Value) -> Value {
     json!({ "oneOf": [table, { "type": "array", "minItems": 1, "items": table }] })
 }
 
-/// The schema of one of several tables, or of the name of a file or bundled profile.
+/// Schema of one of several tables, or of the name of a file or bundled profile.
 fn with_name(mut tables: Vec<Value>) -> Value {
     tables.push(json!({ "type": "string" }));
     json!({ "oneOf": tables })
 }
 
-/// The schemas of a finger, one for each set of fields that can occur together.
+/// Schemas of a finger, one for each set of fields that can occur together.
 fn fingers() -> Vec<Value> {
     let tables = Tables { before: "version = 1\nfinger = {", after: "}", key: "finger" };
     variants(&tables).iter().map(|variant| variant_object(variant, &Map::new())).collect()
@@ -170,7 +170,7 @@ fn variant_object(variant: &Variant, inner: &Map<String, Value>) -> Value {
     object(&table, &inner)
 }
 
-/// The schema of a table. `inner` has more precise schemas for some of its fields.
+/// Schema of a table. `inner` has more precise schemas for some fields.
 fn object(table: &KnownTable, inner: &Map<String, Value>) -> Value {
     let mut properties = Map::new();
     for known in &table.fields {

@@ -1,4 +1,4 @@
-//! Finds the fields of a table that can occur together, by giving the parser every choice that the table has.
+//! Finds the fields of a table that can occur together: the parser reads the table with each possible choice.
 
 use super::super::file::describe;
 use super::super::grammar::{Holds, KnownField, KnownTable};
@@ -19,11 +19,11 @@ pub(in super::super) struct Variant {
     pub(in super::super) parts: Vec<Part>,
 }
 
-/// Values of a field that all lead to the same set of fields.
+/// Values of a field that lead to the same set of fields.
 #[derive(Clone)]
 pub(in super::super) struct Part {
     pub(in super::super) field: &'static str,
-    /// Whether the field is a table, without words.
+    /// Whether the field is a table.
     pub(in super::super) table: bool,
     pub(in super::super) words: Vec<&'static str>,
     /// Whether the field may be absent.
@@ -31,7 +31,7 @@ pub(in super::super) struct Part {
 }
 
 impl Tables<'_> {
-    /// The fields that the parser reads if `fields` are in the table.
+    /// The fields that the parser reads if the table contains `fields`.
     fn known(&self, fields: &[String]) -> Option<KnownTable> {
         let comma = if self.before.ends_with('{') { "" } else { ", " };
         let fields = if fields.is_empty() { String::new() } else { format!("{comma}{}", fields.join(", ")) };
@@ -41,7 +41,7 @@ impl Tables<'_> {
 }
 
 impl Part {
-    /// One of the values, as written in a file; `None` if the field is absent.
+    /// One of the values as written in a file; `None` if the field is absent.
     fn written(&self) -> Option<String> {
         match (self.absent, self.table, self.words.first()) {
             (true, ..) => None,
@@ -98,7 +98,7 @@ fn parts(tables: &Tables, known: &KnownField, plain: &KnownTable) -> Vec<Part> {
     }
 }
 
-/// Every field that a layer of any kind can have, with all words that it can hold in any kind.
+/// Every field of any kind of layer, with all words that it can hold in any kind.
 pub(in super::super) fn known_layer_fields() -> Vec<KnownField> {
     let mut all: Vec<KnownField> = Vec::new();
     for (kind, _) in KindName::ALL {

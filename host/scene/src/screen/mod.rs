@@ -1,6 +1,6 @@
-//! Screens: size, coating, and the drive that the electrode and its insulator bear.
+//! Screens: size, coating, and drive limits.
 //!
-//! A screen is a TOML file of its own, or the table `[screen]` of a scene; both have the same fields.
+//! A screen is a TOML file of its own, or the table `[screen]` of a scene. Both have the same fields.
 
 mod read;
 #[cfg(test)]
@@ -11,7 +11,7 @@ use super::fields::read_text;
 
 pub(super) use read::read;
 
-/// The numbers of a screen.
+/// Parameters of a screen.
 ///
 /// ```
 /// use frixel_scene::Screen;
@@ -49,7 +49,7 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// The coating of the example screen: 1 um of silicon dioxide, as laboratory screens have.
+    /// The coating of the example screen: 1 um of silicon dioxide, typical of laboratory screens.
     pub const EXAMPLE: Self = Self { thickness_um: 1.0, permittivity: 3.9 };
 }
 
@@ -59,8 +59,7 @@ impl Screen {
         read_text(text, name, "this screen", read)
     }
 
-    /// The screen that a scene gets when it does not say which: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its
-    /// own.
+    /// The screen of a scene that names none: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its own.
     pub fn example() -> Self {
         Self {
             name: Some("example".to_owned()),

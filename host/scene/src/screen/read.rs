@@ -6,7 +6,7 @@ use crate::log::Log;
 use crate::mistake::FieldMistake;
 use crate::tables::{coating, screen};
 
-/// Largest effective gap that a board takes.
+/// Largest effective gap that a board accepts.
 const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 
 /// Reads a whole table, that of a file or `[screen]` of a scene.
@@ -32,7 +32,7 @@ pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen
     })
 }
 
-/// Reads slabs in series; an empty list is a mistake of the table around it.
+/// Reads slabs in series. An empty list is a mistake of the enclosing table.
 fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<Vec<Slab>> {
     if slabs.is_empty() {
         log.add(

@@ -65,7 +65,7 @@ fn a_layer_without_effect_is_dropped() {
              [[layer]]\nname = \"nothing\"\nkind = \"grating\"\nblend = \"add\"\nwavelength_mm = 4\nlow_n = 0\nhigh_n = 0"
         ),
         &[
-            "layer 4 \"nothing\" is played as a constant: it wants the same friction everywhere",
+            "layer 4 \"nothing\" is played as a constant: its friction is the same everywhere",
             "layer 1 (constant) is optimised away: it changes nothing",
             "layer 3 (constant) is optimised away: it changes nothing",
             "layer 4 \"nothing\" is optimised away: it changes nothing",

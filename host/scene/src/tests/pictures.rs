@@ -82,7 +82,7 @@ fn a_black_icon_on_a_transparent_ground_is_felt_over_white() {
         let pictures = BTreeMap::from([("textures/icon.png".to_owned(), icon())]);
         let scene = Scene::parse(&text, "icon.toml", &pictures).expect("it is a scene");
         let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
-        let is_hidden = program.warnings().any(|warning| warning.to_string().contains("nobody feels its shape"));
+        let is_hidden = program.warnings().any(|warning| warning.to_string().contains("its shape cannot be felt"));
         let friction_n = crate::reference::Reference::new(&program).electric_friction_n(1e-3 * x_mm, 4.5e-3);
         ((10.0 * friction_n / program.reach.electric_friction_max_n).round() as i64, is_hidden)
     };
