@@ -59,7 +59,7 @@ impl fmt::Display for State {
 pub enum Fault {
     /// The amplifier reports a fault.
     Amplifier,
-    /// The amplifier's monitor shows another voltage than the driven one, or one that rises or stays while the
+    /// The amplifier's monitor shows a voltage other than the driven one, or one that rises or stays while the
     /// amplifier is disabled.
     Monitor,
     /// A tick missed its deadline.
@@ -74,8 +74,8 @@ pub enum Fault {
     Watchdog,
     /// The arm switch was released while armed or playing.
     ArmSwitch,
-    /// The configuration read back from the DAC before arming or playing was wrong. The fault's detail is the
-    /// control register as read.
+    /// The configuration read back from the DAC before arming or playing was wrong. The fault's detail is the control
+    /// register as read.
     Dac,
     /// A fault of newer firmware that this crate does not know, by number.
     Other(u8),
@@ -183,7 +183,7 @@ impl Flags {
     pub const STILL: Self = Self(1 << 2);
     /// No finger touches the screen, or no touch has been reported yet.
     pub const NO_FINGER: Self = Self(1 << 3);
-    /// Touch data is old: friction falls, and is zero when [`Self::NO_FINGER`] is set, too.
+    /// Touch data is old and friction falls; it is zero if [`Self::NO_FINGER`] is also set.
     pub const TOUCH_STALE: Self = Self(1 << 4);
     /// A carrier edge came early, to keep the electrode free of direct current.
     pub const CARRIER_BALANCED: Self = Self(1 << 5);
@@ -259,7 +259,7 @@ pub struct UnknownNumber(pub u8);
 
 impl fmt::Display for UnknownNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "number {} stands for nothing that this program knows: update it", self.0)
+        write!(f, "number {} is unknown to this program: update it", self.0)
     }
 }
 

@@ -29,7 +29,7 @@ const DECODED_MAX_LEN: usize = PAYLOAD_MAX_LEN + CRC_LEN;
 
 const _: () = assert!(cobs::max_encoding_length(DECODED_MAX_LEN) + 1 == FRAME_MAX_LEN);
 
-/// Computed bit by bit, without a table of 1 KiB: about 40 instructions per byte, 5 % of a board's processor time at
+/// Computed bit by bit, without a table of 1 KiB: about 40 instructions per byte, or 5 % of a board's processor time at
 /// 2 Mbaud.
 static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
@@ -199,8 +199,8 @@ impl Decoder {
         }
     }
 
-    /// Removes the CRC behind the payload; returns whether the CRC is correct. An empty payload is refused: its CRC is
-    /// zero, so that a single wrong bit makes its frame of any five zeros in a row.
+    /// Removes the CRC after the payload; returns whether the CRC is correct. An empty payload is refused: its CRC is
+    /// zero, so a single flipped bit would turn any five zeros in a row into its frame.
     fn strip_crc(&mut self) -> bool {
         let decoded = self.decoded.get(..self.len).unwrap_or_default();
         let Some((payload, crc)) = decoded.split_last_chunk::<CRC_LEN>() else { return false };

@@ -55,23 +55,22 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
-    /// Notices for a person before a play ([`notice`]), encoded after the limits.
+    /// Notices to show before a play ([`notice`]), encoded after the limits.
     pub notices: u8,
 }
 
-/// Bits of [`Hello::notices`]: what a person should know of a board before playing.
+/// Bits of [`Hello::notices`]: warnings about a board to show before a play.
 pub mod notice {
-    /// The processor's option bytes are wrong for this board, such as the brown-out level and the start of
-    /// the watchdog. The board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
+    /// The processor's option bytes, such as the brown-out level and the watchdog start, are wrong for this board. The
+    /// board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
     pub const OPTION_BYTES: u8 = 1;
-    /// The stored limits are not in effect, because one exceeds a ceiling of the firmware, or because they were
-    /// stored for another series resistance or by a build with other ceilings. The limits that are built in are in
-    /// effect.
+    /// The built-in limits are in effect instead of the stored ones. A stored limit exceeds a ceiling of the firmware,
+    /// or the limits were stored for another series resistance or by a build with other ceilings.
     pub const STORED_LIMITS_REFUSED: u8 = 1 << 1;
-    /// The firmware was built to take stored limits above its ceilings for voltage and current.
+    /// The firmware was built to accept stored limits above its ceilings for voltage and current.
     pub const LIMITS_ABOVE_CEILINGS: u8 = 1 << 2;
 
-    /// What each notice means, and what to do, as a sentence without a full stop.
+    /// Meaning and remedy of each notice, as a sentence without a full stop.
     pub const SENTENCES: [(u8, &str); 3] = [
         (
             OPTION_BYTES,
@@ -88,22 +87,21 @@ pub mod notice {
         (
             LIMITS_ABOVE_CEILINGS,
             "the board's firmware takes voltages and currents above the ceilings for a person who touches it: flash a \
-             build without the feature limits-above-ceilings before anybody does",
+             build without the feature limits-above-ceilings before anyone does",
         ),
     ];
 }
 
 impl Hello {
-    /// What a person should know of the board before playing: a sentence without a full stop for each notice that this
-    /// crate knows.
+    /// Sentences of the notices that this crate knows, without a full stop.
     pub fn notice_sentences(&self) -> impl Iterator<Item = &'static str> {
         let notices = self.notices;
         notice::SENTENCES.iter().filter(move |(bit, _)| notices & bit != 0).map(|(_, sentence)| *sentence)
     }
 }
 
-/// Bits of [`Hello::features`]: the features enabled in the firmware build, in addition to constant layers and the
-/// square carrier, which every build has. `frixel-layers` has the bits of the other kinds of layers.
+/// Bits of [`Hello::features`]: features of the firmware build besides constant layers and the square carrier, which
+/// every build has. `frixel-layers` has the bits of the other kinds of layers.
 pub mod feature {
     /// The sine carrier.
     pub const SINE_CARRIER: u32 = 1 << 2;
@@ -118,7 +116,7 @@ pub mod feature {
     /// Empirical laws of fingers.
     pub const EMPIRICAL: u32 = 1 << 13;
 
-    /// The name of each feature that is no kind of layer: that of the board's Cargo feature, where there is one.
+    /// The name of each feature that is not a kind of layer: the board's Cargo feature, where there is one.
     pub const NAMES: [(u32, &str); 5] = [
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
@@ -146,7 +144,7 @@ pub enum BoardKind {
 }
 
 impl BoardKind {
-    /// Whether the board is simulated or emulated. Such a board has no electrode, so it cannot harm anyone.
+    /// Whether the board is simulated or emulated. It then has no electrode, and cannot harm anyone.
     pub const fn is_simulated(self) -> bool {
         matches!(self, Self::Simulator | Self::Mps2An386)
     }
@@ -247,12 +245,12 @@ impl fmt::Display for ResetCause {
     }
 }
 
-/// The processor core by whose costs a board estimates the ticks of a scene. The numbers on the wire never change.
+/// The processor core whose costs are used to estimate the ticks of a scene. The numbers on the wire never change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Core {
-    /// Cortex-M4F, or another that has a floating-point unit and takes no more cycles.
+    /// Cortex-M4F, or a core with a floating-point unit that takes no more cycles.
     CortexM4f,
-    /// Cortex-M0+, which computes floating-point numbers in software.
+    /// Cortex-M0+, which emulates floating-point arithmetic in software.
     CortexM0Plus,
 }
 
@@ -267,7 +265,7 @@ impl Core {
 }
 
 impl From<u8> for Core {
-    /// A number that this crate does not know is read as the Cortex-M4F: the board refuses what its core cannot do.
+    /// An unknown number is read as the Cortex-M4F. The board itself refuses what exceeds its core.
     fn from(number: u8) -> Self {
         match number {
             1 => Self::CortexM0Plus,
@@ -302,18 +300,17 @@ pub struct BoardLimits {
     /// Limit on the estimated processor cycles of a scene's longest tick. The board refuses a scene whose estimate
     /// exceeds it at any position.
     pub tick_cycles_max: u32,
-    /// Resistance between the amplifier and the electrode, Ohm. It bounds the current through a person whom no coating
-    /// protects, and with it the peak voltage at each carrier frequency (`frixel_model::TouchBound`). Infinite on a
-    /// board that nobody can touch, such as a simulated one.
+    /// Resistance between the amplifier and the electrode, Ohm. It bounds the current through a person who is not
+    /// protected by a coating, and thus the peak voltage at each carrier frequency (`frixel_model::TouchBound`).
+    /// Infinite if the board cannot be touched, such as a simulated one.
     pub series_resistance_ohm: f32,
-    /// The core whose cycles [`Self::tick_cycles_max`] are.
+    /// The core for which [`Self::tick_cycles_max`] counts cycles.
     pub core: Core,
 }
 
 impl BoardLimits {
-    /// [`Self::tick_cycles_max`] of the smallest board: 60 % of the 4,250 cycles that an STM32G474 at 170 MHz has
-    /// between two ticks at 40 kHz. The rest is reserved for interrupts that delay the tick and for the error of the
-    /// estimate.
+    /// [`Self::tick_cycles_max`] of the slowest board: 60 % of the 4,250 cycles between two ticks of an STM32G474 at
+    /// 170 MHz and 40 kHz. The rest is reserved for interrupts that delay the tick and for the error of the estimate.
     pub const SMALLEST_TICK_CYCLES_MAX: u32 = 2_550;
 
     /// Defaults for limits that a hello omits: no scene can be played, and the host may send one frame at a time.

@@ -116,7 +116,7 @@ pub enum Command {
         /// The finger's number.
         finger: u8,
     },
-    /// Reads how long the ticks have taken. The board answers [`Accepted::TickTimes`]; one without telemetry refuses.
+    /// Reads the durations of the ticks. The board answers [`Accepted::TickTimes`]; without telemetry, it refuses.
     TickTimes,
 }
 
@@ -198,22 +198,22 @@ pub enum Accepted {
         /// The text, padded with zeros.
         bytes: [u8; FAULT_TEXT_PIECE_LEN],
     },
-    /// How long the ticks have taken.
+    /// Durations of the ticks.
     TickTimes(TickTimes),
 }
 
-/// Number of classes that [`TickTimes::histogram`] has below the deadline.
+/// Number of classes of [`TickTimes::histogram`] up to the deadline.
 pub const TICK_TIME_CLASSES: usize = 8;
 
-/// How long the ticks have taken since power-on, from the beginning of the tick's period until its drive was handed to
-/// the DAC. All zero but for the missed deadlines on a board that does not measure it, such as a simulated one.
+/// Durations of the ticks since power-on, from the start of a tick's period until its drive was handed to the DAC. A
+/// board that does not measure them, such as a simulated one, reports zeros except for missed deadlines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, MaxSize)]
 pub struct TickTimes {
-    /// Cycles of the processor after which a drive is too late; zero if the board does not measure its ticks.
+    /// Deadline of a drive in processor cycles; zero if the board does not measure its ticks.
     pub deadline_cycles: u32,
     /// Cycles of the longest tick.
     pub worst_cycles: u32,
-    /// Missed deadlines, modulo 2^32: late drives, and ticks that had not ended when the next began.
+    /// Missed deadlines, modulo 2^32: late drives, and ticks that had not ended when the next one began.
     pub missed_deadlines: u32,
     /// Number of ticks that took up to one eighth of the deadline, up to two eighths, and so on; the last counts those
     /// beyond the deadline. A count stays at 2^32 - 1.
@@ -235,7 +235,7 @@ pub struct Telemetry {
     pub finger_y_m: f32,
     /// Estimated sliding speed, m/s.
     pub speed_m_per_s: f32,
-    /// Target electric friction, the friction above the natural one: the input of the inverse model, N.
+    /// Target electric friction, the friction above natural friction: the input of the inverse model, N.
     pub commanded_electric_friction_n: f32,
     /// Rms voltage of the envelope, V.
     pub voltage_v_rms: f32,

@@ -1,4 +1,4 @@
-//! A report of the touch source, the same from the wire to the tracker.
+//! A report of the touch source, used on the wire and by the tracker.
 
 /// One report of the touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]

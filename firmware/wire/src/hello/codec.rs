@@ -8,9 +8,9 @@ use crate::fault::{Fault, State};
 
 /// Number of bytes before the limits.
 pub(super) const FIXED_LEN: usize = 44;
-/// Bytes of the limits before the notices, tags and lengths included: one of 1 byte, one of 2, nine of 4.
+/// Length of the limits before the notices, including tags and lengths: one of 1 byte, one of 2, nine of 4.
 const LIMITS_LEN: usize = 11 * 2 + 1 + 2 + 9 * 4;
-/// Bytes of the limits, of the notices, and of the limits behind them.
+/// Length of the limits, the notices, and the limits after them.
 pub(super) const VALUES_LEN: usize = LIMITS_LEN + (2 + 1) + (2 + 4) + (2 + 1);
 
 const TAG_BITMAP_POOL_BYTES: u8 = 1;
@@ -154,7 +154,7 @@ impl BoardLimits {
         }
     }
 
-    /// The `f32` limit of this tag.
+    /// The `f32` limit with this tag.
     fn real(&mut self, tag: u8) -> Option<&mut f32> {
         match tag {
             TAG_VOLTAGE_MAX_V_PEAK => Some(&mut self.voltage_max_v_peak),
@@ -170,7 +170,7 @@ impl BoardLimits {
     }
 }
 
-/// The tags and values of these bytes, one after the other; ends with a `None` if the last one is truncated.
+/// Iterates over the tags and values in these bytes. Ends with `None` if the last one is truncated.
 fn tagged(mut bytes: &[u8]) -> impl Iterator<Item = Option<(u8, &[u8])>> {
     core::iter::from_fn(move || {
         let (tag, rest) = bytes.split_first()?;

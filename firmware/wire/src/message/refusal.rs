@@ -189,10 +189,9 @@ pub enum ConfigField {
     ClickLayers,
     /// The largest electric friction that the scene declares as its target, N.
     ElectricFrictionMax,
-    /// The power of the voltage with which the friction of an empirical law grows, below its first point or between
-    /// two.
+    /// The exponent of the voltage in an empirical law, below its first point or between two points.
     LawExponent,
-    /// The voltage of a point of an empirical law, V rms: finite, above zero and above that of the point before.
+    /// The voltage of a point of an empirical law, V rms: finite, above zero and above the previous point's.
     LawPoint,
     /// The electric friction of a point of an empirical law, or of the law at the largest voltage, N.
     LawFriction,
@@ -291,7 +290,10 @@ impl fmt::Display for Refusal {
                  again"
             ),
             Self::CrcMismatch { expected, found } => {
-                write!(f, "CRC-32 {expected:#010x} was announced, what arrived has {found:#010x}: upload it again")
+                write!(
+                    f,
+                    "CRC-32 {expected:#010x} was announced, but the received data has {found:#010x}: upload it again"
+                )
             }
             Self::SceneTooLarge { len, max } => {
                 write!(f, "the scene has {len} bytes, the board takes {max}: use fewer layers")
@@ -332,7 +334,7 @@ impl fmt::Display for Refusal {
                  commit it again",
             ),
             Self::OptionBytes => f.write_str(
-                "the processor has option bytes with which the board may not drive: switch the amplifier off, run \
+                "the processor's option bytes do not allow the board to drive: switch the amplifier off, run \
                  `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and compare all of them \
                  if it refuses again (docs/hardware.md, Option bytes)",
             ),
@@ -343,7 +345,7 @@ impl fmt::Display for Refusal {
 fn wrong_state(state: State) -> &'static str {
     match state {
         State::Disarmed => "the board is disarmed: arm it before play or stop",
-        State::Armed => "the board is armed and does not play: let it play first, or disarm it",
+        State::Armed => "the board is armed and is not playing: play the scene first, or disarm it",
         State::Active => "the board is playing: stop it first",
         State::Faulted => "a fault is latched on the board: clear it first",
     }
@@ -363,7 +365,7 @@ fn fmt_too_costly(f: &mut fmt::Formatter<'_>, cycles: u32, cycles_max: u32, [x_m
     write!(
         f,
         "a tick would take about {cycles} cycles at {:.1} mm, {:.1} mm, and may take {cycles_max}: let fewer layers \
-         meet there",
+         overlap there",
         1e3 * x_m,
         1e3 * y_m
     )
