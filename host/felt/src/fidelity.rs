@@ -1,17 +1,16 @@
-//! How faithfully a finger felt the friction that a scene defines.
+//! Fidelity of the felt friction to the friction that a scene defines.
 //!
-//! The input is a record of a touch: the friction that the finger felt, and the reference: the friction that a display
-//! without any fault would have given the same finger under the same load, with the same noise. The output is a number
-//! for each property that a person notices. Bands are separated at 40 Hz: below, a person feels friction as it changes
-//! along the way; above, as vibration, whose phase nobody feels.
+//! The input is a record of a touch: felt friction, and the reference. The reference is the friction that an ideal
+//! display would have given the same finger, with the same load and noise. The output is one number for each
+//! perceptible property. Bands are separated at 40 Hz. Below, friction is perceived as it changes along the way; above,
+//! as vibration, whose phase is not perceived.
 //!
-//! All of them compare the electric parts of the two: natural friction is the same in both, and would make any display
-//! look faithful. For contrast, which is relative to the total friction, the mean natural friction takes the place of
-//! the natural friction of each moment, whose own changes are no contrast of the scene; and it counts only where the
-//! board drove the scene, since an output that is off makes no contrast of the scene either.
+//! All numbers compare electric friction, since natural friction is the same in both and would make any display look
+//! faithful. Contrast is relative to the total friction. It uses the mean natural friction, since changes of natural
+//! friction are not a contrast of the scene. It counts only while the board drives the scene, since switching the
+//! output is not one either.
 //!
-//! Landing and end of a touch count as much as its middle. A ratio to a reference of which nothing can be felt is
-//! absent.
+//! Start and end of a touch count as much as its middle. Ratios are absent if the reference is imperceptible.
 
 mod goal;
 
@@ -28,33 +27,33 @@ use crate::spectrum::Spectrum;
 
 pub use goal::{FidelityMean, Goal};
 
-/// Samples a second.
+/// Sampling rate, Hz.
 pub const SAMPLE_HZ: f64 = 4000.0;
-/// The border between what is felt as friction and what is felt as vibration, Hz.
+/// Border between perceived friction and perceived vibration, Hz.
 pub const BAND_BORDER_HZ: f64 = 40.0;
 /// Upper end of the band of vibrations, Hz.
 pub const BAND_END_HZ: f64 = 400.0;
-/// A shorter stretch of touch is not scored, in samples.
+/// Shortest scored touch, in samples.
 const STRETCH_MIN: usize = 1000;
 /// Delays that are tried, in samples: from 10 ms early to 100 ms late.
 const DELAYS: std::ops::RangeInclusive<i32> = -40..=400;
-/// Correlation at a delay below which it says nothing.
+/// Correlation below which a delay is meaningless.
 const CORRELATION_MIN: f64 = 0.1;
-/// Covariances that differ by less, relative to them, are the same.
+/// Relative tolerance for equal covariances.
 const ROUNDING: f64 = 1e-9;
-/// Samples of the mean from which rates are taken: a quarter of a period at [`BAND_END_HZ`].
+/// Window of the mean from which rates are computed, in samples: a quarter of a period at [`BAND_END_HZ`].
 const RATE_SAMPLES: usize = 10;
-/// Least rms of the changes of a reference, N, to which something is in a ratio: that of the smallest texture with a
+/// Smallest rms of the changes of a reference for which ratios are computed, N: that of the smallest texture with a
 /// threshold, whose amplitude is 0.2 mN.
 const REFERENCE_MIN_RMS_N: f64 = 1.4e-4;
 /// Third octaves from [`BAND_BORDER_HZ`] to [`BAND_END_HZ`].
 const THIRD_OCTAVES: u32 = 10;
-/// Samples after the output came and before it goes in which it is on its way: 20 ms.
+/// Settling time after the output is switched on and before it is switched off, in samples: 20 ms.
 const SETTLING: usize = 80;
-/// Outputs that are off, whatever the scene says.
+/// Flags with which the output is off, regardless of the scene.
 const OFF: [Flags; 4] = [Flags::NO_FINGER, Flags::TOUCH_STALE, Flags::STILL, Flags::HOST_SILENT];
 
-/// Ticks from one sample to the next, on a board of `tick_hz` ticks a second.
+/// Ticks per sample, on a board with tick rate `tick_hz`.
 pub fn ticks_per_sample(tick_hz: u32) -> u32 {
     (f64::from(tick_hz) / SAMPLE_HZ).round().max(1.0) as u32
 }
@@ -68,22 +67,22 @@ pub struct FidelitySample {
     pub x_m: f64,
     /// The finger's place from the top edge of the screen, m.
     pub y_m: f64,
-    /// Sliding speed in m/s, while the finger is on the screen and the board has had a report of it. Friction before the
-    /// first report cannot be right and is not scored.
+    /// Sliding speed in m/s, while the finger is on the screen and the board has received a report of it. Friction
+    /// before the first report is not scored, since the board cannot render it.
     pub speed_m_per_s: Option<f64>,
     /// Total friction of the reference, N.
     pub reference_n: f64,
     /// Total friction that the finger felt, N.
     pub felt_n: f64,
-    /// Natural friction, which both have, N.
+    /// Natural friction, part of both, N.
     pub natural_n: f64,
-    /// Whether the board drove the scene: not while touch reports were missing or the finger stood still.
+    /// Whether the board drove the scene. It does not while touch reports are missing or the finger stands still.
     pub is_driven: bool,
 }
 
 impl FidelitySample {
-    /// A row of a record with [`SAMPLE_HZ`] rows a second that began `start_s` after the power-on of the board, and
-    /// whose reference goes through the simulated finger.
+    /// Converts a row of a record with [`SAMPLE_HZ`] rows per second, whose reference is filtered through the simulated
+    /// finger. `start_s` is the time from the board's power-on to the start of the record.
     pub fn of_row(row: &FeltRow, start_s: f64) -> Self {
         Self {
             t_s: start_s + row.t_s,
@@ -102,13 +101,13 @@ impl FidelitySample {
         self.reference_n - self.natural_n
     }
 
-    /// Electric part of what the finger felt, N.
+    /// Electric part of the felt friction, N.
     pub(crate) fn felt_electric_n(&self) -> f64 {
         self.felt_n - self.natural_n
     }
 }
 
-/// How faithfully friction was felt. A ratio to a reference of which nothing can be felt is `None`.
+/// Fidelity of felt friction. Ratios are `None` if the reference is imperceptible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Fidelity {
     /// Rms error from 0 to 400 Hz, the mean error included, over the rms of the reference without its mean.
@@ -129,23 +128,22 @@ pub struct Fidelity {
     pub contrast_weber_steps: f64,
     /// The felt contrast over that of the reference, both in Weber steps.
     pub contrast_kept: Option<f64>,
-    /// Delay of the felt friction, at which it is most like the reference, ms; `None` where the two have nothing in
-    /// common.
+    /// Delay of the felt friction at its best match with the reference, ms; `None` if they are uncorrelated.
     pub delay_ms: Option<f64>,
-    /// The same as a distance at the mean speed, mm.
+    /// The delay as a distance at the mean speed, mm.
     pub delay_mm: Option<f64>,
     /// 99th percentile of the rate of change of the felt friction over that of the reference.
     pub peak_rate_kept: Option<f64>,
-    /// What the felt friction has beyond the reference in the third octaves from 40 to 400 Hz, N: the root of the sum of
-    /// what their powers have grown by. One that lost power makes up for none that grew. A texture that is out of phase,
-    /// which nobody feels, is not spurious.
+    /// Spurious friction in the third octaves from 40 to 400 Hz, N: the root of the sum of the powers by which felt
+    /// friction exceeds the reference. A band that lost power does not compensate one that gained power. A texture with
+    /// the wrong phase is not spurious, since phase is not perceived.
     pub spurious_40_to_400_hz_n: f64,
-    /// The third octave that has grown most, over the finger's own noise in it, dB; `None` if none has grown.
+    /// Third octave with the largest gain, relative to the finger's own noise in it, dB; `None` without any gain.
     pub spurious_over_noise_db: Option<f64>,
 }
 
 impl Fidelity {
-    /// Scores a record of [`SAMPLE_HZ`] samples a second; `None` without a touch of a quarter of a second.
+    /// Scores a record sampled at [`SAMPLE_HZ`]; `None` if no touch lasts a quarter of a second.
     pub fn of(samples: &[FidelitySample]) -> Option<Self> {
         let touches = samples.split(|sample| sample.speed_m_per_s.is_none());
         let touches: Vec<&[FidelitySample]> = touches.filter(|touch| touch.len() >= STRETCH_MIN).collect();
@@ -190,7 +188,7 @@ impl Fidelity {
         })
     }
 
-    /// The score without ratios to the changes of a reference that only load and skin change, not the scene.
+    /// The score without ratios, for a reference that changes only with load and skin, and not with the scene.
     #[must_use]
     pub fn without_ratios(self) -> Self {
         Self {
@@ -209,7 +207,7 @@ impl Fidelity {
     }
 }
 
-/// The stretches of a record in which the board drives the scene, without the time in which the output comes and goes.
+/// The parts of a record in which the board drives the scene, without settling times.
 pub(crate) fn settled(samples: &[FidelitySample]) -> impl Iterator<Item = &[FidelitySample]> {
     let driven = samples.split(|sample| !sample.is_driven || sample.speed_m_per_s.is_none());
     driven.filter_map(|run| run.get(SETTLING..run.len().checked_sub(SETTLING)?))
@@ -232,11 +230,11 @@ struct Powers {
     low: Band,
     /// Up to [`BAND_END_HZ`].
     high: Band,
-    /// Square of the mean error, which the spectra leave out.
+    /// Square of the mean error, which the spectra omit.
     error_mean: f64,
     /// Covariance at each of [`DELAYS`].
     covariance_by_delay: Vec<f64>,
-    /// What the felt friction has beyond the reference in each third octave; negative if it has less.
+    /// Power by which felt friction exceeds the reference in each third octave; negative for a loss.
     growth: [f64; THIRD_OCTAVES as usize],
 }
 
@@ -301,8 +299,8 @@ impl Powers {
         }
     }
 
-    /// The delay of the largest covariance, in samples: of those that differ by rounding only, as the periods of a
-    /// grating do, the least. `None` where felt and reference have nothing in common.
+    /// Delay of the largest covariance, in samples; the smallest one if several are equal within rounding, as for a
+    /// grating's periods. `None` if felt friction and reference are uncorrelated.
     fn delay(&self) -> Option<f64> {
         let largest = self.covariance_by_delay.iter().copied().max_by(f64::total_cmp)?;
         let likeness = CORRELATION_MIN * (self.low.reference * self.low.felt).sqrt();
@@ -311,7 +309,7 @@ impl Powers {
         best.map(|(_, delay)| f64::from(delay)).min_by_key(|delay| delay.abs() as u32).filter(|_| largest > likeness)
     }
 
-    /// By what the third octaves that grew have grown.
+    /// Power gains of the third octaves.
     fn grown(&self) -> impl Iterator<Item = f64> {
         self.growth.iter().map(|growth| growth.max(0.0))
     }
@@ -337,14 +335,15 @@ impl Band {
         self.cross += weight * pairs.map(|(reference, felt)| (felt * reference.conj()).re).sum::<f64>();
     }
 
-    /// Correlation of felt and reference; 0 for a display that adds nothing, so that it does not drop out of a mean.
+    /// Correlation of felt friction and reference; 0 for a display that adds nothing, so that it still counts in a
+    /// mean.
     fn correlation(&self) -> f64 {
         let scale = (self.reference * self.felt).sqrt();
         if scale > 0.0 { self.cross / scale } else { 0.0 }
     }
 }
 
-/// 99th percentile of the magnitude of the rate of change of a mean over [`RATE_SAMPLES`].
+/// 99th percentile of the magnitude of the rate of change of a running mean over [`RATE_SAMPLES`].
 fn peak_rate(touches: &[&[FidelitySample]], value: fn(&FidelitySample) -> f64) -> Option<f64> {
     let rates = touches.iter().flat_map(|touch| {
         let sums: Vec<f64> = touch.windows(RATE_SAMPLES).map(|window| window.iter().map(value).sum()).collect();

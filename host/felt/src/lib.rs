@@ -1,12 +1,12 @@
-//! What a person feels of a scene: before it is played, and of a play that was recorded.
+//! Predicts the perception of a scene, and evaluates recorded plays.
 //!
-//! The input is a compiled [`Program`](frixel_scene::Program), and of a play the observations of every tick. The crate
+//! The input is a compiled [`Program`](frixel_scene::Program) and, for a play, observations of every tick. The crate
 //! opens no file and reads no clock, and it compiles for `wasm32-unknown-unknown`.
 //!
 //! - [`FrictionMap`]: the target friction of a program over its screen.
-//! - [`check`]: what a program costs and what will be felt of it, as `frixel check` prints it.
-//! - [`judge`]: what a person will feel of each element, with its sources.
-//! - [`recorder`]: records what a board did and what its finger felt, and compares it with the reference.
+//! - [`check`]: costs and predicted perception of a program, as printed by `frixel check`.
+//! - [`judge`]: predicted perception of each element, with sources.
+//! - [`recorder`]: records a board and its finger, and compares them with the reference.
 //! - [`metrics`]: the size of the errors.
 //! - [`fidelity`]: how faithfully friction was felt, in numbers that a person notices.
 //! - [`GoesOn`]: how long work is interrupted, here and in the crates above.

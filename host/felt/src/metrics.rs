@@ -2,28 +2,26 @@
 //!
 //! - The **friction error** is felt friction minus reference friction. Both are means over one carrier period that ends
 //!   at the sample, so that variation within a carrier period does not count as error. The error counts while the
-//!   finger is down. In the first period after the finger came down, the mean is over the samples since then, so that
-//!   no sample is skipped. When the finger goes up, the window is emptied.
-//!   The time from the touch to the first report that reaches the board does not count, because nothing can be felt
-//!   before the board knows of the finger; it is counted apart.
+//!   finger is down. After the finger comes down, the mean starts with the samples since then, so that no sample is
+//!   skipped; when the finger goes up, the window is emptied. The time from the touch to the first report that reaches
+//!   the board is counted separately, since the board cannot render friction before.
 //! - The **inversion error** is the model's friction at the commanded voltage minus the board's target. It counts while
-//!   the finger is down, the reference friction is in reach and the envelope is not at its slew limit: a voltage that
-//!   is still on its way to the target is no error of the inverse. Those ticks are counted apart.
-//! - The **load mismatch** is the part of the felt friction that is there because the finger presses with another load
-//!   than the one that the scene is meant for. The reference has it too, so that it is no part of the friction error.
-//! - The **carrier ripple** is felt friction minus its mean over the carrier period around it, half a period on either
-//!   side, so that a friction that changes at a constant rate has no ripple. It counts where that period lies wholly
-//!   within a touch.
+//!   the finger is down, the reference friction is in reach, and the envelope is not at its slew limit. Slew-limited
+//!   ticks are counted separately.
+//! - The **load mismatch** is the friction error caused by a normal load other than the scene's. The reference contains
+//!   it too, so it is not part of the friction error.
+//! - The **carrier ripple** is felt friction minus its mean over the carrier period centred on the sample, so that
+//!   friction that changes at a constant rate has no ripple. It counts if that period lies entirely within a touch.
 //!
-//! These numbers, except the reference friction, need a sample for every tick. A number is absent if a sample that it
-//! needs was not observed.
+//! Except for the reference friction, these numbers need a sample in every tick. A number is absent if a required
+//! sample was not observed.
 
 /// The known values of one tick. Frictions are totals, in newtons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Whether the finger is on the screen.
     pub finger_down: bool,
-    /// Whether the board knows of a finger; absent if the board did not report.
+    /// Whether the board has received a report of a finger; absent if the board did not report.
     pub board_has_finger: Option<bool>,
     /// The reference friction at the finger's place.
     pub reference_n: Option<f64>,
@@ -33,12 +31,12 @@ pub struct Sample {
     pub commanded_n: Option<f64>,
     /// The friction that the finger felt.
     pub felt_n: Option<f64>,
-    /// The friction that the full model gives for the commanded rms voltage, the DAC's step included, through an ideal
-    /// amplifier; absent where the reference friction is out of reach.
+    /// Friction of the full model at the commanded rms voltage, including DAC steps, with an ideal amplifier; absent if
+    /// the reference friction is out of reach.
     pub inversion_n: Option<f64>,
     /// Whether the envelope was at its slew limit.
     pub slewing: bool,
-    /// The part of the friction that is there because of another load than the one that the scene is meant for.
+    /// Friction error caused by a normal load other than the scene's.
     pub load_mismatch_n: Option<f64>,
     /// Whether the board clamped its target; absent if the board did not report.
     pub saturated: Option<bool>,
@@ -50,7 +48,7 @@ pub struct Metrics {
     error: PeriodMean,
     felt: Centred,
     finger_down_samples: u64,
-    /// The board has known of the finger since it came down.
+    /// Whether the board has received a report of the finger since it came down.
     is_reported: bool,
     unreported_samples: u64,
     /// Samples in which the board reported.
@@ -64,14 +62,14 @@ pub struct Metrics {
     reference_range_n: Option<(f64, f64)>,
 }
 
-/// The errors of a play. A number is absent if no sample counted, or if it needs ticks that were not observed.
+/// The errors of a play. A number is absent if no sample counted, or if a required tick was not observed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MetricsSummary {
     /// Ticks of the play.
     pub ticks: u64,
     /// Observed ticks with the finger on the screen.
     pub finger_down_ticks: u64,
-    /// Those of them before the first touch report of a touch reached the board. They have no friction error.
+    /// Those ticks before the first report of a touch reached the board. They have no friction error.
     pub unreported_ticks: u64,
     /// Ticks in which the board clamped its target.
     pub saturated_ticks: Option<u64>,
@@ -81,12 +79,12 @@ pub struct MetricsSummary {
     pub slewing_ticks: Option<u64>,
     /// The model's friction at the commanded voltage, minus the board's target.
     pub inversion_error: Option<ErrorSize>,
-    /// Friction that is there because of another load than the one that the scene is meant for.
+    /// Friction error caused by a normal load other than the scene's.
     pub load_mismatch: Option<ErrorSize>,
-    /// Root mean square of felt minus its mean over the carrier period around it, N.
+    /// Rms of felt friction minus its mean over the centred carrier period, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Least and largest reference friction under the finger, in total, N, but for the micrometres after it lands or
-    /// turns.
+    /// Smallest and largest total reference friction under the finger, N, except in the first micrometres after it
+    /// lands or turns.
     pub reference_range_n: Option<(f64, f64)>,
 }
 
@@ -206,8 +204,8 @@ impl Spread {
     }
 }
 
-/// The last values, up to a fixed number, and their sum. The sum is computed anew each time the ring wraps around, so
-/// that rounding errors do not accumulate over hours.
+/// The last values, up to a fixed number, and their sum. The sum is recomputed each time the ring wraps around, so that
+/// rounding errors do not accumulate.
 #[derive(Clone, Debug)]
 struct Ring {
     values: Vec<f64>,
@@ -268,7 +266,7 @@ impl PeriodMean {
 }
 
 /// Difference of a value and the mean over the period around it. The window has one value more than a period, and its
-/// two ends count half, so that it is centred on a value.
+/// two end values count half, so that it is centred.
 #[derive(Clone, Debug)]
 struct Centred {
     ring: Ring,

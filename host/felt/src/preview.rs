@@ -1,7 +1,7 @@
-//! The target friction of a scene over its whole screen, as a picture in memory.
+//! The target friction of a scene over its screen, as an image in memory.
 //!
-//! The input is a program. The output is a value for every pixel, with a caption for a person. The caller adds colours
-//! and rulers and writes files.
+//! The input is a program. The output is a value for every pixel, with a caption. The caller adds colours and rulers
+//! and writes files.
 
 use frixel_layers::{Button, Edge, Layer};
 
@@ -53,7 +53,7 @@ impl MapGrid {
     }
 }
 
-/// Position of a friction relative to the range that the drive can reach.
+/// Position of a friction relative to the reachable range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachSide {
     /// Below the friction at no voltage.
@@ -85,10 +85,10 @@ impl ReachSide {
 pub struct FrictionMap {
     /// The pixels.
     pub grid: MapGrid,
-    /// Electric friction at each pixel, as a fraction of the largest that the drive can reach; below 0 or above 1 it is
-    /// out of reach. Row after row from the top left.
+    /// Electric friction at each pixel as a fraction of the largest reachable one, row by row from the top left; out of
+    /// reach below 0 or above 1.
     pub parts_of_reach: Vec<f64>,
-    /// Notes that a person needs to read the map, a sentence each.
+    /// Notes for reading the map, one sentence each.
     pub caption: Vec<String>,
 }
 
@@ -162,7 +162,7 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
     sentences
 }
 
-/// Describes the friction that the finger feels at no voltage and at the largest one.
+/// Describes the finger's friction at no voltage and at the largest one.
 fn finger(program: &Program) -> String {
     let Reach { voltage_max_v_rms, .. } = program.reach;
     format!(
@@ -181,7 +181,7 @@ fn has_click(layer: &Layer) -> bool {
     }
 }
 
-/// Share of the map on one side of the reach, in percent.
+/// Percentage of the map on one side of the reach.
 fn percent(parts_of_reach: &[f64], wanted: ReachSide) -> f64 {
     let found = parts_of_reach.iter().filter(|part| ReachSide::of(**part) == wanted).count();
     100.0 * found as f64 / parts_of_reach.len().max(1) as f64

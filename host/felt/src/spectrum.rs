@@ -9,15 +9,15 @@ use rustfft::num_complex::Complex;
 /// The spectrum of a signal.
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
-    /// One value for each frequency from zero to below half of the sampling frequency. Its squared magnitude is the
-    /// mean square of the signal at that frequency.
+    /// One value per frequency, from zero to below half the sampling frequency. Its squared magnitude is the mean
+    /// square of the signal at that frequency.
     pub(crate) bins: Vec<Complex<f64>>,
-    /// Distance of two frequencies, Hz.
+    /// Frequency resolution, Hz.
     pub(crate) bin_hz: f64,
 }
 
 impl Spectrum {
-    /// The spectrum of a part of a longer signal, with its mean taken off, under a Hann window, which hides both ends.
+    /// Spectrum of a part of a longer signal, without its mean, under a Hann window, which hides both ends.
     pub(crate) fn of(samples: &[f64], sample_hz: f64) -> Self {
         let count = samples.len() as f64;
         let mean = samples.iter().sum::<f64>() / count.max(1.0);
@@ -29,14 +29,14 @@ impl Spectrum {
         Self::transform(windowed, samples.len(), sample_hz, 1.0 / 0.375)
     }
 
-    /// The spectrum of a whole signal, with its mean taken off: every sample counts the same.
+    /// Spectrum of a whole signal, without its mean: every sample counts the same.
     pub(crate) fn of_whole(samples: &[f64], sample_hz: f64) -> Self {
         let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
         Self::transform(samples.iter().map(|sample| sample - mean), samples.len(), sample_hz, 1.0)
     }
 
-    /// The spectrum of a whole signal without the line through its two ends, whose jump from the last sample to the
-    /// first would be spread over all frequencies.
+    /// Spectrum of a whole signal without the line through its two ends, since a jump from the last sample to the first
+    /// would spread over all frequencies.
     pub(crate) fn of_levelled(samples: &[f64], sample_hz: f64) -> Self {
         let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
             return Self::of_whole(samples, sample_hz);
@@ -47,12 +47,12 @@ impl Spectrum {
         Self::of_whole(&levelled, sample_hz)
     }
 
-    /// `scale` makes up for the power that a window takes.
+    /// `scale` compensates for the power lost in a window.
     fn transform(signal: impl Iterator<Item = f64>, count: usize, sample_hz: f64, scale: f64) -> Self {
         let mut bins: Vec<Complex<f64>> = signal.map(|sample| Complex::new(sample, 0.0)).collect();
         FftPlannerScalar::new().plan_fft_forward(count).process(&mut bins);
         bins.truncate(count / 2);
-        // Each frequency has a negative twin.
+        // Each frequency has a negative counterpart.
         let scale = (2.0 * scale).sqrt() / count.max(1) as f64;
         for bin in &mut bins {
             *bin *= scale;
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(band_rms(&[], 8000, 0.0..4000.0).abs().to_bits(), 0.0_f64.to_bits());
     }
 
-    /// A jump at the ends, which a line has, is no power of the signal.
+    /// A jump at the ends, as of a line, is not power of the signal.
     #[test]
     fn a_levelled_line_has_no_power_and_a_landing_counts_in_a_whole_signal() {
         let line: Vec<f64> = (0..2000).map(f64::from).collect();

@@ -1,4 +1,4 @@
-//! What the tests of several modules share.
+//! Helpers shared by the tests of several modules.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub(crate) fn program(layers: &str) -> Program {
     compiled(&format!("{HEAD}{layers}"))
 }
 
-/// A scene, whatever its ticks cost.
+/// A scene, without a limit on its ticks' cost.
 pub(crate) fn compiled(text: &str) -> Program {
     let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).expect("it is a scene");
     let limits = BoardLimits { tick_cycles_max: u32::MAX, ..LIMITS };

@@ -15,7 +15,7 @@ pub struct BoardImage {
 }
 
 impl BoardImage {
-    /// The image for the board of this kind; for the NUCLEO-G474RE if it is no real board's.
+    /// The image for a kind of board; for the NUCLEO-G474RE if that kind is simulated.
     pub(super) fn of(program: &Program, kind: BoardKind) -> Self {
         let (folder, target, processor) = match kind {
             BoardKind::Pico => ("firmware/board-pico", " --target thumbv6m-none-eabi", Some("rp2040")),

@@ -1,4 +1,4 @@
-//! What a person will feel of a scene, as text.
+//! Perception of a scene, as text.
 
 use frixel_scene::LayerTitle;
 
@@ -7,10 +7,10 @@ use crate::judge::{
     THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
 };
 
-/// Rows of a terminal with lines on the elements of a scene; more are counted in one line. With the costs, all fits 40
+/// Largest number of lines about elements; the others are summarised in one line. With the costs, the output fits 40
 /// rows of 80 characters.
 const ROWS_MAX: usize = 18;
-/// Characters of a row, and those before a line's text.
+/// Characters per row, and before a line's text.
 const ROW_CHARS: usize = 80;
 const NAME_CHARS: usize = 19;
 /// Lines on layers that are alike; more are counted in one line.
@@ -19,14 +19,14 @@ const ALIKE_LINES_MAX: usize = 2;
 /// A verdict on a layer, or on its click.
 struct Finding {
     layer: LayerTitle,
-    /// What of the layer it is: empty, or `click of `.
+    /// The part of the layer: empty, or `click of `.
     part: &'static str,
     verdict: Verdict,
     text: String,
 }
 
-/// Lines of a name and a text. The first ones are named by a verdict: one for all elements of which the same is felt,
-/// what is least sure first. Then come layers that are alike, and notes.
+/// Lines of a name and a text. The first lines are grouped by verdict, the least certain first, with one line for all
+/// elements with the same perception. Indistinguishable layers and notes follow.
 pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
     let mut elements: Vec<Finding> = judgement.layers.iter().flat_map(elements).collect();
     elements.sort_by_key(|element| element.verdict.sureness());
@@ -51,7 +51,7 @@ pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// What a person will feel of a layer, a verdict and its reasons.
+/// Perception of a layer: the verdict and its reasons.
 pub fn sentence(layer: &LayerVerdict) -> String {
     let texts = elements(layer).map(|Finding { part, verdict, text, .. }| {
         if part.is_empty() {
@@ -63,7 +63,7 @@ pub fn sentence(layer: &LayerVerdict) -> String {
     texts.collect::<Vec<String>>().join("; ")
 }
 
-/// The verdict on a layer, and that on its click where it is less sure.
+/// The verdict on the layer, and on its click if that is less certain.
 fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Finding> {
     let title = &layer.layer;
     let whole = Finding { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
@@ -78,15 +78,15 @@ fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Finding> {
 }
 
 fn click_text(layer: &LayerVerdict, click: &Step) -> String {
-    let cut_off = if layer.is_click_cut_off { ", cut off at the most that the drive can give" } else { "" };
+    let cut_off = if layer.is_click_cut_off { ", clamped to the most that the drive can give" } else { "" };
     format!("{}{cut_off}", step_text(click, ""))
 }
 
-/// Elements of which the same is felt.
+/// Elements with the same perception.
 struct Group {
     verdict: Verdict,
     text: String,
-    /// The first of the copies of a layer, and how many more there are.
+    /// The first copy of each layer, and the number of other copies.
     members: Vec<(Finding, usize)>,
 }
 
@@ -109,8 +109,7 @@ impl Group {
     }
 }
 
-/// Joins the elements of the same verdict that have the same text, and those that are copies of one layer, for which the
-/// first one stands.
+/// Groups elements with the same verdict and text, and copies of one layer, of which the first one is named.
 fn grouped(elements: Vec<Finding>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for element in elements {
@@ -132,7 +131,7 @@ fn grouped(elements: Vec<Finding>) -> Vec<Group> {
     groups
 }
 
-/// How many elements of each verdict have no line.
+/// Number of elements without a line, by verdict.
 fn rest(groups: &[Group]) -> Option<String> {
     let counts = [Verdict::NotFelt, Verdict::Unknown, Verdict::NearThreshold, Verdict::Felt].map(|verdict| {
         let count: usize = groups.iter().filter(|group| group.verdict == verdict).map(Group::count).sum();
@@ -142,12 +141,12 @@ fn rest(groups: &[Group]) -> Option<String> {
     (!counts.is_empty()).then(|| format!("{} (--json has them all)", counts.join(", ")))
 }
 
-/// Reasons of a layer's verdict: the steps and the texture that are felt, what keeps it from being felt, and advice.
+/// Reasons for a layer's verdict: perceptible steps and texture, obstacles, and advice.
 fn reasons(layer: &LayerVerdict) -> String {
     let LayerVerdict { verdict, over, contrast, speed_mm_per_s, reasons, advice, burst, .. } = layer;
     if *over == Over::Samples {
         let Step { from_n, to_n, .. } = contrast;
-        return format!("what is streamed moves it between {} and {} mN", millinewtons(*from_n), millinewtons(*to_n));
+        return format!("the stream moves it between {} and {} mN", millinewtons(*from_n), millinewtons(*to_n));
     }
     let told = told(layer);
     let speed = speed_mm_per_s.filter(|_| !told.is_empty() && *verdict != Verdict::NotFelt);
@@ -160,11 +159,11 @@ fn reasons(layer: &LayerVerdict) -> String {
     told.collect::<Vec<String>>().join("; ")
 }
 
-/// The steps and the texture that are felt as surely as the layer.
+/// The steps and the texture that are as certain as the layer's verdict.
 fn told(layer: &LayerVerdict) -> Vec<String> {
     let LayerVerdict { verdict, over, contrast, is_narrow, texture, border, reasons, .. } = layer;
     if reasons.contains(&Reason::Flat) {
-        return vec![format!("{} mN throughout, without a border that is felt", millinewtons(contrast.from_n))];
+        return vec![format!("{} mN throughout, without a perceptible border", millinewtons(contrast.from_n))];
     }
     let place = match (over, is_narrow) {
         (Over::Speed, _) => " from 20 to 100 mm/s",
@@ -178,7 +177,7 @@ fn told(layer: &LayerVerdict) -> Vec<String> {
     let mut steps: Vec<(Step, String)> =
         border.iter().map(|border| (border.step, from(border))).chain([(*contrast, place.to_owned())]).collect();
     steps.sort_by(|(one, _), (other, _)| other.weber_steps.abs().total_cmp(&one.weber_steps.abs()));
-    // Bursts make what is felt while they last less sure.
+    // Bursts make a perception less certain than during the burst.
     let surest = layer.click.iter().map(|click| click.verdict).chain(texture.iter().map(|texture| texture.verdict));
     let surest = Verdict::of_any(surest.chain(steps.iter().map(|(step, _)| step.verdict)));
     let mut told: Vec<String> = steps
@@ -187,7 +186,7 @@ fn told(layer: &LayerVerdict) -> Vec<String> {
         .map(|(step, place)| step_text(step, place))
         .collect();
     if *verdict == Verdict::NotFelt {
-        // One of the steps is as good a reason as both.
+        // One of the steps suffices as a reason.
         told.truncate(1);
     }
     told.extend(texture.iter().filter(|texture| texture.verdict == surest).map(texture_text));
@@ -211,7 +210,7 @@ fn step_text(step: &Step, place: &str) -> String {
 fn texture_text(texture: &Texture) -> String {
     let Texture { frequency_hz, amplitude_n, natural_noise_n, verdict, .. } = texture;
     let threshold = match texture_range_n(*frequency_hz) {
-        None => "where no threshold is known".to_owned(),
+        None => "with no known threshold".to_owned(),
         Some(_) if *verdict == Verdict::Unknown => {
             format!("less than the finger's own noise of about {} mN", two_digits(1e3 * natural_noise_n))
         }
@@ -235,19 +234,19 @@ fn reason_text(reason: &Reason) -> Option<String> {
             format!("too small for {limit}: the scene has {} Weber steps", weber_steps_text(*weber_steps))
         }
         Reason::TooSlow { way_mm, weber_steps } => {
-            format!("too slow a slope: {} in all, on more than {way_mm:.0} mm", weber_steps_text(*weber_steps))
+            format!("too slow a slope: {} in total, over more than {way_mm:.0} mm", weber_steps_text(*weber_steps))
         }
         Reason::TooWeak => "too weak".to_owned(),
         Reason::TooShort { duration_ms, least_ms } => {
-            format!("too short: {} ms, and {least_ms:.0} ms would do", two_digits(*duration_ms))
+            format!("too short: {} ms; it needs {least_ms:.0} ms", two_digits(*duration_ms))
         }
         Reason::TooRare { pause_ms, touch_ms } => format!(
-            "too rare: a pause of {} s, and a touch of {} s may fall within it",
+            "too rare: a pause of {} s may contain a whole touch of {} s",
             two_digits(1e-3 * pause_ms),
             two_digits(1e-3 * touch_ms)
         ),
         Reason::Buzz => "a buzz, not stripes in place".to_owned(),
-        // The steps and textures before it say this.
+        // The preceding steps and textures imply this.
         Reason::Flat | Reason::NotStudied => return None,
     };
     Some(text)
@@ -259,7 +258,7 @@ fn alike_text(alike: &AlikeLayers) -> String {
         format!("{difference_db:.1} dB apart in voltage; {VOLTAGE_DIFFERENCE_DB} dB are needed to tell them apart")
     });
     let friction = difference_weber_steps
-        .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart by it"));
+        .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart"));
     let [one, other] = [0, 1].map(|side| match copies[side] {
         0 => layers[side].to_string(),
         copies => format!("{} and {copies} alike", layers[side]),

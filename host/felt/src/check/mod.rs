@@ -1,7 +1,7 @@
-//! The cost of a scene, and the friction that a finger will feel of it, computed before it is played.
+//! Costs and predicted perception of a scene.
 //!
-//! The input is a program, the limits of the board that it was compiled for, and what that board needs for it
-//! ([`BoardCosts`]). The output is [`SceneCheck`], as text for a person or as JSON.
+//! The input is a program, the limits of the board that it was compiled for, and the board's costs for it
+//! ([`BoardCosts`]). The output is [`SceneCheck`], as text for people or as JSON.
 
 mod board;
 pub mod feel;
@@ -17,24 +17,24 @@ use serde::Serialize;
 use crate::judge::Judgement;
 pub use board::BoardImage;
 
-/// What a board needs for a program.
+/// Costs of a program on a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoardCosts {
-    /// Bytes that the host sends, without the hello, until a board that holds no picture has accepted the program.
+    /// Bytes sent by the host, without the hello, until a board without pictures has accepted the program.
     pub wire_total_bytes: usize,
-    /// Bytes of coefficients that the program fills in the board's RAM.
+    /// Bytes of the program's coefficients in the board's RAM.
     pub active_bytes: usize,
-    /// Rows of the inverse table that the board computes for the program.
+    /// Rows of the inverse table computed for the program.
     pub table_rows: usize,
-    /// Rows that it would compute for a program that targets the whole reachable range.
+    /// Rows computed for a program that targets the whole reachable range.
     pub table_rows_whole: usize,
 }
 
 impl BoardCosts {
-    /// What the board of `rig` needs for a program that it has accepted, after so many bytes on its line.
+    /// Costs on the board of `rig` of a program that it accepted after `wire_total_bytes` on its line.
     pub fn of(program: &Program, rig: &RigConfig, wire_total_bytes: u64) -> Self {
         let scene = program.scene_bytes();
-        // This parse does not fail: the board has parsed the same bytes.
+        // This cannot fail: the board has parsed the same bytes.
         let taken = WireScene::parse(&scene).ok();
         let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
         let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
@@ -46,7 +46,7 @@ impl BoardCosts {
 /// The costs and limits of a scene; the field names are the keys of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneCheck {
-    /// Number of layers that are played.
+    /// Number of played layers.
     pub layers: usize,
     /// Bytes of the upload.
     pub wire: WireBytes,
@@ -54,26 +54,26 @@ pub struct SceneCheck {
     pub ram: RamBytes,
     /// The longest tick.
     pub tick: LongestTick,
-    /// The finger that the newtons are computed for.
+    /// The finger for which friction is computed.
     pub finger: CheckedFinger,
     /// Friction that the drive can reach on this finger.
     pub reach: ReachableFriction,
-    /// Friction that the scene targets.
+    /// Target friction of the scene.
     pub targets: TargetRange,
-    /// Reasons to doubt these newtons, a sentence each.
+    /// Reasons to doubt the computed friction, one sentence each.
     pub warnings: Vec<String>,
-    /// What a person will feel of it.
+    /// Predicted perception.
     pub judgement: Judgement,
-    /// Values that the compiler rounded, converted or clamped, a sentence each.
+    /// Values rounded, converted or clamped by the compiler, one sentence each.
     pub notes: Vec<String>,
-    /// Parts of the scene that the compiler omitted and the reasons, a sentence each.
+    /// Parts of the scene omitted by the compiler with the reasons, one sentence each.
     pub left_out: Vec<String>,
     /// The smallest firmware image that plays the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub board: Option<BoardImage>,
 }
 
-/// Bytes sent from host to board, if the board does not hold any picture of the scene yet.
+/// Bytes sent from host to board if the board holds no picture of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WireBytes {
     /// The compiled scene: header, layers, points.
@@ -103,18 +103,18 @@ pub struct RamBytes {
     pub table_room_bytes: usize,
 }
 
-/// The longest tick on the core of the board that the program is for.
+/// The longest tick on the core of the program's board.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LongestTick {
     /// Estimated processor cycles.
     pub cycles: u32,
     /// Largest estimate that a board accepts.
     pub cycles_limit: u32,
-    /// A position of the finger at which a tick may take that long, mm from the screen's left edge.
+    /// A position of the finger with the longest tick, mm from the screen's left edge.
     pub x_mm: f64,
     /// The same position, mm from the screen's top edge.
     pub y_mm: f64,
-    /// Layers that may act at that position.
+    /// Layers that may act at this position.
     pub layers: Vec<String>,
 }
 
@@ -136,7 +136,7 @@ impl LongestTick {
 /// The finger that a scene is compiled for.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CheckedFinger {
-    /// The finger, for a person.
+    /// Title of the finger.
     pub title: String,
     /// `assumed`, `perceptual` or `measured`, on the screen that the scene is compiled for.
     pub origin: &'static str,
@@ -156,7 +156,7 @@ pub struct ReachableFriction {
 }
 
 impl SceneCheck {
-    /// Computes the costs of a program that was compiled for a board with these limits, which needs `costs` for it.
+    /// Computes the costs of a program for a board with these limits and `costs`.
     pub fn of(program: &Program, limits: &BoardLimits, costs: &BoardCosts, judgement: Judgement) -> Self {
         let scene_bytes = program.scene_bytes().len();
         let bitmap_bytes = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();

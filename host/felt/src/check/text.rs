@@ -98,12 +98,12 @@ fn kilobytes(bytes: usize) -> String {
     format!("{:.1} kB", 1e-3 * bytes as f64)
 }
 
-/// A limit in newtons with four digits after the point, which is itself within the limit.
+/// A limit in newtons, rounded down to four decimal places.
 fn rounded_down(limit_n: f64) -> f64 {
     (1e4 * limit_n).floor() / 1e4
 }
 
-/// The part of the inverse table that the board computes.
+/// The computed part of the inverse table.
 fn table(ram: &RamBytes) -> String {
     let RamBytes { table_bytes, table_whole_bytes, table_room_bytes, .. } = *ram;
     let cut = match table_whole_bytes.saturating_sub(table_bytes) / InverseTable::ROW_BYTES {

@@ -1,9 +1,9 @@
-//! How faithful a texture has to be on strokes of people, and the mean of several strokes that is held against it.
+//! Fidelity goal of a texture on human strokes, and the mean of several strokes to compare with it.
 
 use super::Fidelity;
 
-/// The fidelity that a texture must reach, landing and end of a touch included. The simulator's tests hold it, and
-/// `docs/touch.md` says which touch sources, speeds and textures reach it.
+/// The required fidelity of a texture, including start and end of a touch. The simulator's tests enforce it, and
+/// `docs/touch.md` lists touch sources, speeds and textures that reach it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     /// Largest [`FidelityMean::error`].
@@ -15,12 +15,12 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// Under a finger whose median speed is 50 or 100 mm/s.
+    /// For a median speed of 50 or 100 mm/s.
     pub const SLOW: Self = Self { error_max: 0.25, correlation_min: 0.9, spurious_over_noise_max_db: 6.0 };
-    /// Under a finger whose median speed is 200 mm/s.
+    /// For a median speed of 200 mm/s.
     pub const FAST: Self = Self { error_max: 0.35, ..Self::SLOW };
 
-    /// Whether these strokes were as faithful as is asked.
+    /// Whether the strokes meet the goal.
     pub fn is_met_by(&self, mean: &FidelityMean) -> bool {
         mean.error <= self.error_max
             && mean.correlation >= self.correlation_min
@@ -37,12 +37,12 @@ pub struct FidelityMean {
     pub correlation: f64,
     /// Root mean square of [`Fidelity::spurious_40_to_400_hz_n`], N.
     pub spurious_40_to_400_hz_n: f64,
-    /// Mean power of [`Fidelity::spurious_over_noise_db`], dB; a stroke on which nothing has grown has none.
+    /// Mean power of [`Fidelity::spurious_over_noise_db`], dB; a stroke without a gain adds none.
     pub spurious_over_noise_db: f64,
 }
 
 impl FidelityMean {
-    /// The mean of these strokes; `None` without a stroke, or if the reference of one has no changes that can be felt.
+    /// The mean of these strokes; `None` without strokes, or if the reference of a stroke has no perceptible changes.
     pub fn of(strokes: &[Fidelity]) -> Option<Self> {
         if strokes.is_empty() {
             return None;
@@ -75,7 +75,7 @@ mod tests {
         let mean = FidelityMean::of(&[stroke(0.3, 0.96, Some(3.0)), stroke(0.1, 0.9, None)]).unwrap();
         assert!((mean.error - 0.05_f64.sqrt()).abs() < 1e-12 && (mean.correlation - 0.93).abs() < 1e-12, "{mean:?}");
         assert!((mean.spurious_40_to_400_hz_n - 1e-3).abs() < 1e-12, "{mean:?}");
-        // Half of the power of 3 dB.
+        // Half the power of 3 dB.
         assert!((mean.spurious_over_noise_db + 0.0103).abs() < 1e-4, "{mean:?}");
         assert!(Goal::SLOW.is_met_by(&mean));
         let worse = [

@@ -65,7 +65,7 @@ fn force_that_the_scene_does_not_have_is_spurious() {
     assert!(fidelity.error_below_40_hz.unwrap() < 1e-3, "{fidelity:?}");
 }
 
-/// The same texture of 150 Hz, a quarter of a period late: nobody feels its phase.
+/// The same texture of 150 Hz, a quarter of a period late: phase is not perceived.
 #[test]
 fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
     let texture = |number: u32, late: f64| 0.004 * libm::sin(TAU * (150.0 * f64::from(number) / SAMPLE_HZ - late));
@@ -82,7 +82,7 @@ fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
     assert!((fidelity.snr_above_40_hz_db.unwrap() + 3.01).abs() < 0.1, "{fidelity:?}");
 }
 
-/// Natural friction that changes by more than the grating, which a display without output does not take part in.
+/// Natural friction that changes by more than the grating, and is independent of a display without output.
 #[test]
 fn natural_friction_makes_no_display_look_faithful() {
     let sample = |number: u32| {
@@ -137,7 +137,7 @@ fn what_faults_take_is_no_contrast_and_is_an_error() {
     assert!((fidelity.error_weber / (0.025 / (WEBER_FRACTION * 0.35)) - 1.0).abs() < 0.03, "{fidelity:?}");
 }
 
-/// A plate is the same everywhere, and nothing is in a ratio to its changes.
+/// A plate is uniform, so there are no ratios to its changes.
 #[test]
 fn a_ratio_without_a_denominator_is_absent() {
     let sample = |number: u32| FidelitySample {
@@ -154,7 +154,7 @@ fn a_ratio_without_a_denominator_is_absent() {
     assert_eq!(ratios, [None; 6], "{fidelity:?}");
 }
 
-/// What is missing when the finger lands counts as much as what is missing later.
+/// Friction missing at the start of a touch counts as much as friction missing later.
 #[test]
 fn a_landing_counts_as_much_as_the_middle() {
     let missing = |from: f64| scored(move |t_s| if (from..from + 0.1).contains(&t_s) { 0.3 } else { grating_n(t_s) });
@@ -162,7 +162,7 @@ fn a_landing_counts_as_much_as_the_middle() {
     assert!((landing / middle - 1.0).abs() < 0.02 && middle > 0.2, "{landing}, {middle}");
 }
 
-/// A gain at 60 Hz does not pay for a loss at 150.
+/// A gain at 60 Hz does not compensate a loss at 150 Hz.
 #[test]
 fn a_third_octave_that_lost_power_makes_up_for_none_that_grew() {
     let wave = |t_s: f64, frequency_hz: f64| 0.004 * libm::sin(TAU * frequency_hz * t_s);

@@ -1,25 +1,25 @@
-//! Changes of an element that may make it felt, in the order in which they are tried.
+//! Changes of an element that may make it perceptible, in the order in which they are tried.
 
 use frixel_layers::{Layer, Region};
 use frixel_scene::Program;
 
 use super::{Element, LayerVerdict, Reason};
 
-/// Factors of a size, in the order in which they are tried.
+/// Size factors, in the order in which they are tried.
 const SIZES: [f64; 8] = [1.25, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0];
-/// Factors of a friction.
+/// Factors of the friction.
 const GAINS: [f64; 4] = [1.25, 1.6, 2.0, 3.0];
-/// The largest part of the screen's sides that an element is made to fill.
+/// Largest fraction of the screen's sides that an enlarged element may fill.
 const SCREEN_PART_MAX: f64 = 0.8;
 
 /// A change of an element.
 pub(super) struct Change {
-    /// The fields that change, as a scene file has them.
+    /// The changed fields, as in a scene file.
     pub(super) text: String,
     pub(super) element: Element,
 }
 
-/// The changes that may make an element felt, the smallest first.
+/// Changes that may make an element perceptible, the smallest first.
 pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
     let is_small = |reason: &Reason| matches!(reason, Reason::TooSmall { .. });
     let is_slow = |reason: &Reason| matches!(reason, Reason::TooSlow { .. });
@@ -44,22 +44,22 @@ pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
     }
 }
 
-/// The element with its layer changed; `None` if it is then visible nowhere.
+/// The element with its layer changed; `None` if it becomes invisible.
 fn changed(element: &Element, text: String, change: impl FnOnce(&mut Program) -> Option<()>) -> Option<Change> {
     let mut program = element.program.clone();
     change(&mut program)?;
-    // The board would end its table at the friction of the scene as it is written.
+    // The board would otherwise limit its table to the friction of the original scene.
     program.header.electric_friction_max_n = None;
     let Element { burst, is_triggered, .. } = *element;
     Some(Change { text, element: Element { burst, is_triggered, ..Element::of(&program, element.layer)? } })
 }
 
-/// The element with a size so many times as large: the wavelength of stripes, the width of a ridge, or the region.
+/// The element scaled by `factor`: the wavelength of stripes, the width of a ridge, or the region.
 fn resized(element: &Element, factor: f64) -> Option<Change> {
     let layer = element.layer;
     let record = element.record()?;
     let times = |value: f32| f64::from(value) * factor;
-    // To tenths of a millimetre.
+    // Round to tenths of a millimetre.
     let rounded_m = |size_m: f64| 1e-4 * (1e4 * size_m).round();
     let mm = |size_m: f64| format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned();
     match record.layer {
@@ -95,7 +95,7 @@ fn resized(element: &Element, factor: f64) -> Option<Change> {
     }
 }
 
-/// The element with a region so many times as large around its middle, on the screen.
+/// The element with its region scaled by `factor` around the middle, within the screen.
 fn enlarged(element: &Element, rounded_m: impl Fn(f64) -> f64, factor: f64) -> Option<Change> {
     let header = &element.program.header;
     let screen_m = [header.screen_width_m, header.screen_height_m].map(f64::from);
@@ -134,14 +134,14 @@ fn gain_max(element: &Element) -> Option<f64> {
     Some(f64::from(most))
 }
 
-/// The element with a gain so many times as large, within the drive's reach.
+/// The element with its gain scaled by `factor`, within the drive's reach.
 fn with_gain(element: &Element, factor: f64) -> Option<Change> {
     let gain = f64::from(element.program.start.get(element.layer)?.gain);
     let gain = (100.0 * factor * gain).round() / 100.0;
     (gain < gain_max(element)?).then(|| gained(element, gain))?
 }
 
-/// The element as strong as the drive can give it by its gain.
+/// The element with the largest gain within the drive's reach.
 fn strongest(element: &Element) -> Option<Change> {
     let gain = f64::from(element.program.start.get(element.layer)?.gain);
     let most = gain_max(element)?;
@@ -156,7 +156,7 @@ fn gained(element: &Element, gain: f64) -> Option<Change> {
     })
 }
 
-/// The element between nothing and all that the drive can give.
+/// The element spanning the drive's full range.
 fn widest(element: &Element) -> Option<Change> {
     let most_n = (0.99 * element.program.reach.electric_friction_max_n) as f32;
     changed(element, "low_fraction = 0, high_fraction = 0.99".to_owned(), |program| {

@@ -1,4 +1,4 @@
-//! Layers of one kind that a person cannot tell apart by their strength.
+//! Layers of one kind with indistinguishable strength.
 
 use frixel_layers::Layer;
 use frixel_scene::{LayerTitle, Program};
@@ -9,33 +9,33 @@ use super::{Element, LayerVerdict, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, webe
 /// An element and its verdict.
 type Judged = (Element, LayerVerdict);
 
-/// Textures whose frequencies differ by less, in octaves, are compared by their voltage. Assumed.
+/// Largest difference in frequency, in octaves, at which textures are compared by voltage. Assumed.
 const ALIKE_OCTAVES: f64 = 1.0 / 3.0;
-/// Frictions that differ by less, in Weber steps, are alike: by less than a person feels.
+/// Difference below which frictions are indistinguishable, in Weber steps.
 const ALIKE_WEBER_STEPS: f64 = 1.0;
 
-/// Rims of buttons whose widths differ by a larger part are told apart by them. Assumed.
+/// Relative difference in width above which rims of buttons are distinguished by width. Assumed.
 const ALIKE_WIDTHS: f64 = 0.25;
 
-/// Two layers of one kind whose difference is less than a person can tell. One of the differences is known.
+/// Two layers of one kind with an imperceptible difference. One of the two differences is known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AlikeLayers {
-    /// The layers: of copies, the first ones.
+    /// The layers; of copies, the first ones.
     pub layers: [LayerTitle; 2],
-    /// How many more copies there are of each.
+    /// Number of other copies of each.
     pub copies: [usize; 2],
-    /// Textures of about the same frequency: difference of their voltages at the 95th percentile of their friction, dB.
+    /// Voltage difference at the 95th percentile of the friction, dB, for textures of similar frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference_db: Option<f64>,
-    /// Plates, buttons and ridges: difference of their least frictions or of their largest ones, whichever differ by
-    /// more, in Weber steps.
+    /// Difference of the least or the largest frictions, whichever is larger, in Weber steps, for plates, buttons and
+    /// ridges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference_weber_steps: Option<f64>,
 }
 
-/// Pairs of layers of one kind that a person cannot tell apart, each for all copies of both. Layers of the same
-/// parameters are meant to feel the same, layers that act at the same place are not felt one by one, and what is not
-/// felt has nothing to be told apart by. Layers that depend on the direction differ by it, however strong they are.
+/// Pairs of indistinguishable layers of one kind, each for all copies of both. Excluded are layers with equal
+/// parameters, which are meant to feel the same; layers that act at the same place; imperceptible layers; and layers
+/// that depend on the direction, which differ by it at any strength.
 pub(super) fn of(judged: &[Judged], program: &Program) -> Vec<AlikeLayers> {
     let mut groups: Vec<(&Judged, usize)> = Vec::new();
     for layer in judged.iter().filter(|(_, found)| found.verdict.sureness() > Verdict::Unknown.sureness()) {
@@ -56,7 +56,7 @@ pub(super) fn of(judged: &[Judged], program: &Program) -> Vec<AlikeLayers> {
     pairs.filter_map(alike).collect()
 }
 
-/// Whether two layers are of one kind, and buttons have rims of about the same width.
+/// Whether two layers are of one kind, with rims of similar width in case of buttons.
 fn are_of_one_form((one, _): &Judged, (other, _): &Judged) -> bool {
     let layer = |element: &Element| element.record().map(|record| record.layer);
     match (layer(one), layer(other)) {
@@ -70,12 +70,12 @@ fn are_of_one_form((one, _): &Judged, (other, _): &Judged) -> bool {
     }
 }
 
-/// Whether a layer acts where another one is.
+/// Whether a layer overlaps another one.
 fn acts_on((one, _): &Judged, (_, other): &Judged) -> bool {
     other.scene.visible >> one.layer & 1 == 1
 }
 
-/// The layers and their difference, if that is too small to tell them apart.
+/// The layers and their difference, if it is imperceptible.
 fn alike(one: &LayerVerdict, other: &LayerVerdict, program: &Program) -> Option<AlikeLayers> {
     let layers = [one, other].map(|found| found.layer.clone());
     match (felt_texture(one), felt_texture(other)) {
@@ -99,7 +99,7 @@ fn alike(one: &LayerVerdict, other: &LayerVerdict, program: &Program) -> Option<
     }
 }
 
-/// The texture at the usual speed, if it may be felt.
+/// The texture at the usual speed, if it may be perceptible.
 fn felt_texture(found: &LayerVerdict) -> Option<&Texture> {
     found.scene.texture.as_ref().filter(|texture| texture.verdict != Verdict::NotFelt)
 }

@@ -1,4 +1,4 @@
-//! The borders of an element that a finger crossed.
+//! Borders of an element crossed by a finger.
 
 use std::ops::Range;
 
@@ -13,11 +13,11 @@ use super::moment::{Moment, ways_m};
 use super::touch::Sums;
 use super::{Step, total_n, visible_layers};
 
-/// Longest way on either side of a border, m.
+/// Longest distance on either side of a border, m.
 const SIDE_MAX_M: f64 = 0.01;
 /// Longest time on either side of a border, in moments: 200 ms.
 const SIDE_MAX: usize = 400;
-/// A shorter time on one side is a corner, in moments: 2 ms.
+/// Shortest time on one side, in moments (2 ms); less is a corner.
 const SIDE_MIN: usize = 4;
 
 /// The borders of an element.
@@ -25,11 +25,11 @@ pub(super) struct Borders {
     program: Program,
     layer: usize,
     reference: Reference,
-    /// The same without the element, if it adds to what lies below: its step is not the change of those below.
+    /// The scene without the element if the element adds to the layers below, whose own changes are not its step.
     below: Option<Reference>,
 }
 
-/// A border of an element that a finger crossed, one way or the other.
+/// A border of an element crossed by a finger, in either direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MetBorder {
     /// The layer on the other side; absent for the bare screen.
@@ -39,8 +39,8 @@ pub(super) struct MetBorder {
 }
 
 impl Borders {
-    /// Borders are met with vibrations at their largest, without clicks, streams, and ridges on what lies below: a
-    /// ridge is felt by itself, and its region ends where nothing is felt.
+    /// Borders are evaluated with vibrations at their largest, and without clicks, streams and added ridges. A ridge is
+    /// perceived by itself, and the end of its region is not perceptible.
     pub(super) fn new(program: &Program, layer: usize, joins: bool, starts_on: impl Fn(usize) -> bool) -> Self {
         let is_ridge_on_ground = |layer: usize| {
             let record = program.records.get(layer);
@@ -54,7 +54,7 @@ impl Borders {
         Self { program: program.clone(), layer, reference, below }
     }
 
-    /// The border that was felt most surely in a run.
+    /// The most certainly perceived border in a run.
     pub(super) fn met(&self, run: &[Moment], fingertip: &Fingertip) -> Option<MetBorder> {
         let visible = |moment: &Moment| visible_layers(&self.reference, moment.context.x_m, moment.context.y_m);
         let visible: Vec<u64> = run.iter().map(visible).collect();
@@ -110,14 +110,15 @@ impl Borders {
     }
 }
 
-/// The moments of one side that count, from the border away; `None` for a corner. `same` moments have the same layers.
+/// The moments of one side to use, starting at the border; `None` for a corner. `same` is the number of moments with
+/// the same layers.
 fn side<'m>(moments: impl Iterator<Item = &'m Moment>, same: usize) -> Option<Range<usize>> {
     let ways_m = ways_m(moments).take(same.min(SIDE_MAX)).take_while(|way_m| *way_m < SIDE_MAX_M);
     let (near, all) = ways_m.fold((0, 0), |(near, all), way_m| (near + usize::from(way_m < FINGERTIP_M), all + 1));
     (all >= SIDE_MIN).then(|| near.min(all - SIDE_MIN)..all)
 }
 
-/// The layer by which a person would call a place: the uppermost that the other place does not have, or the uppermost.
+/// The layer that characterises a place: the topmost one that is absent at the other place, or the topmost one.
 fn own_layer(layers: u64, other_layers: u64) -> Option<usize> {
     let own = layers & !other_layers;
     (if own == 0 { layers } else { own }).checked_ilog2().map(|bit| bit as usize)

@@ -1,4 +1,4 @@
-//! Elements: the layers of a program, each as it is judged.
+//! Elements: the layers of a program, as judged.
 
 use frixel_hil_sim::Stroke;
 use frixel_layers::{Blend, Burst, Direction, Layer, Record, Region, Vibration};
@@ -10,8 +10,8 @@ use super::way::Way;
 /// Speeds of the three strokes, m/s: slow, usual and fast exploration. Assumed.
 pub(super) const SPEEDS_M_PER_S: [f64; 3] = [0.02, 0.05, 0.1];
 
-/// Longest pause between two bursts of a judged program, s, so that a finger that crosses 4 mm at the slowest of the
-/// speeds is there during a burst. A longer pause is a reason by itself.
+/// Longest pause between two bursts of a judged program, s: a finger that crosses 4 mm at the slowest speed then meets
+/// a burst. A longer pause is a reason of its own.
 const PAUSE_MAX_S: f32 = 0.2;
 
 /// A layer of a program, and the way across it.
@@ -22,14 +22,14 @@ pub struct Element {
     pub(super) title: LayerTitle,
     pub(super) program: Program,
     pub(super) burst: Option<Burst>,
-    /// Whether the layer is on when it is to be felt: a program or a person switches it on, or it was played.
+    /// Whether the layer is switched on by a program or a person, or was on during the play.
     pub(super) is_triggered: bool,
-    /// The way across it; absent for one that was played already.
+    /// The way across it; absent for a layer of a recorded play.
     pub(super) way: Option<Way>,
 }
 
-/// The three strokes across an element, at 20, 50 and 100 mm/s: over the part of it that no other layer replaces, and
-/// 10 mm beyond, within the screen; there and back if a layer of the scene depends on the direction.
+/// Returns three strokes across an element, at 20, 50 and 100 mm/s. They cover the part that no other layer replaces,
+/// and 10 mm beyond, within the screen. If a layer of the scene depends on the direction, they go there and back.
 pub fn strokes(element: &Element) -> Vec<Stroke> {
     let there_and_back = element.program.records.iter().any(|record| matches!(record.layer, Layer::Direction(_)));
     let way = element.way.as_ref();
@@ -37,7 +37,7 @@ pub fn strokes(element: &Element) -> Vec<Stroke> {
 }
 
 impl Element {
-    /// A layer of a program, from the bottom; `None` if it is visible nowhere.
+    /// A layer of a program, given its index from the bottom; `None` if it is visible nowhere.
     pub fn of(program: &Program, layer: usize) -> Option<Self> {
         let record = program.records.get(layer)?;
         let mut element = Self::as_played(program, layer)?;
@@ -63,7 +63,7 @@ impl Element {
         Some(element)
     }
 
-    /// A layer of a program that was played as it is.
+    /// A layer of a recorded program.
     pub(super) fn as_played(program: &Program, layer: usize) -> Option<Self> {
         let burst = match program.records.get(layer)?.layer {
             Layer::Vibration(vibration) if vibration.burst.period_s > 0.0 => Some(vibration.burst),
@@ -73,7 +73,7 @@ impl Element {
         Some(Self { layer, title, program: program.clone(), burst, is_triggered: true, way: None })
     }
 
-    /// The program that plays while the element is judged: the element is on, and pauses between bursts are short.
+    /// The program for judging the element: the element is on, and pauses between bursts are short.
     pub fn program(&self) -> &Program {
         &self.program
     }
@@ -82,8 +82,7 @@ impl Element {
         self.program.records.get(self.layer)
     }
 
-    /// Whether another element has the same parameters but for its place and how it is turned: what is felt of one is
-    /// felt of the other.
+    /// Whether another element differs only in place and rotation, and thus feels the same.
     pub(super) fn is_copy_of(&self, other: &Self) -> bool {
         let of_one_table = self.title.number().table == other.title.number().table;
         let size = |element: &Self| match element.record()?.region {
@@ -99,13 +98,13 @@ impl Element {
             && (setting(self), blend(self), self.burst) == (setting(other), blend(other), other.burst)
     }
 
-    /// Whether another element has the same parameters but for its place, its size and how it is turned.
+    /// Whether another element differs only in place, size and rotation.
     pub(super) fn has_parameters_of(&self, other: &Self) -> bool {
         let placeless = |element: &Self| element.record().map(|record| without_place(record.layer));
         placeless(self) == placeless(other)
     }
 
-    /// The smaller side of its region, or the width of a ridge at half of its height, m; infinite for the whole screen.
+    /// The smaller side of its region, or the width at half height of a ridge, m; infinite for the whole screen.
     pub(super) fn extent_m(&self) -> f64 {
         let Some(record) = self.record() else { return f64::INFINITY };
         let region_m = match record.region {
@@ -120,7 +119,7 @@ impl Element {
         }
     }
 
-    /// Whether it adds to the layers below, which are felt with it: what is felt is not all its own.
+    /// Whether it adds to the layers below, so that they are perceived together.
     pub(super) fn joins_those_below(&self) -> bool {
         self.record().is_some_and(|record| matches!(record.blend, Blend::Add | Blend::Max))
     }

@@ -1,14 +1,14 @@
-//! The spatial resolution of a fingertip: changes along a way, averaged over it.
+//! Spatial resolution of a fingertip: averages changes along a way.
 
 use std::ops::Range;
 
 use super::measure::FINGERTIP_M;
 use super::moment::{Moment, ways_m};
 
-/// Longest time over which changes are averaged, in moments on either side: 50 ms, half a period at 10 Hz.
+/// Longest averaging time, in moments on either side: 50 ms, half a period at 10 Hz.
 const SIDE_MAX: usize = 100;
 
-/// For each moment of a run, the moments that are nearer than half of the fingertip's resolution.
+/// For each moment of a run, the moments within half the fingertip's resolution.
 pub(super) struct Fingertip {
     windows: Vec<Range<usize>>,
 }
@@ -29,7 +29,7 @@ impl Fingertip {
         Self { windows: ways_m.iter().enumerate().map(window).collect() }
     }
 
-    /// Means of the values of a range over what a fingertip resolves within the range.
+    /// Averages the values of a range over the fingertip's resolution, within the range.
     pub(super) fn smoothed(&self, values: &[f64], range: Range<usize>) -> Vec<f64> {
         let mut sum = 0.0;
         let sums: Vec<f64> = std::iter::once(0.0)

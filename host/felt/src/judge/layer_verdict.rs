@@ -5,62 +5,63 @@ use serde::Serialize;
 
 use super::{AlikeLayers, BorderStep, BurstTimes, Element, Level, Over, Reason, Step, Texture, Verdict};
 
-/// What a person will feel of a program.
+/// Predicted perception of a program.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Judgement {
-    /// The layers that are visible somewhere, from bottom to top.
+    /// The visible layers, from bottom to top.
     pub layers: Vec<LayerVerdict>,
-    /// Layers that a person cannot tell apart by their strength.
+    /// Layers that a person cannot distinguish by their strength.
     pub alike: Vec<AlikeLayers>,
-    /// What only a sliding finger feels, and other notes, a sentence each.
+    /// Notes, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// What a person will feel of a layer.
+/// Predicted perception of a layer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerVerdict {
     /// The layer's number and title.
     pub layer: LayerTitle,
-    /// Whether a person feels the layer: the surest of contrast, texture, border and click, at the best of the speeds.
+    /// Whether a person perceives the layer: the most certain of contrast, texture, border and click, at the best
+    /// speed.
     pub verdict: Verdict,
-    /// The best of the speeds, mm/s; absent where friction depends on the speed, in one play of any speed, or where
-    /// nothing was played.
+    /// The best speed, mm/s; absent if friction depends on the speed, in a single play of any speed, or if nothing was
+    /// played.
     pub speed_mm_per_s: Option<f64>,
-    /// Why it is not surely felt, or felt otherwise than it is written.
+    /// Reasons why it is not certainly perceived, or not as designed.
     pub reasons: Vec<Reason>,
-    /// What would be felt instead; absent where nothing was sought.
+    /// A change that would make it perceptible; absent if none was sought.
     pub advice: Option<String>,
-    /// What the contrast is a change with.
+    /// The variable over which the contrast is measured.
     pub over: Over,
-    /// The felt contrast within the layer, on ways of at most 50 mm: from the 5th to the 95th percentile, or from the
-    /// least to the largest friction of an edge, or if [`Self::is_narrow`]. Over speed, from the friction at 20 mm/s to
-    /// that at 100 mm/s; over the direction, between a slide and the slide back; of a stream, from its lowest to its
+    /// The felt contrast within the layer, over ways of at most 50 mm: from the 5th to the 95th percentile, or from the
+    /// smallest to the largest friction for an edge or if [`Self::is_narrow`]. Over speed, from the friction at 20 mm/s
+    /// to the friction at 100 mm/s; over direction, between both directions; for a stream, from its lowest to its
     /// highest sample.
     pub contrast: Step,
-    /// Whether the friction is the same almost everywhere in the layer, but for a narrow place that makes the contrast.
+    /// Whether friction is uniform in the layer except for a narrow place that makes the contrast.
     pub is_narrow: bool,
-    /// The most noticeable texture; absent where there is none.
+    /// The most noticeable texture; absent if there is none.
     pub texture: Option<Texture>,
-    /// The border of the layer that is felt most surely, as a step onto it; absent for a layer without any.
+    /// The most certainly perceived border, as a step onto the layer; absent for a layer without a border.
     pub border: Option<BorderStep>,
-    /// The bursts of a vibration, during which contrast and texture hold; absent if they hold all the time.
+    /// The bursts of a vibration, during which contrast and texture hold; absent if they hold at all times.
     pub burst: Option<BurstTimes>,
-    /// The step with which the layer's click begins.
+    /// The initial step of the layer's click.
     pub click: Option<Step>,
-    /// Whether the drive cannot give all of the click.
+    /// Whether the drive clamps the click.
     pub is_click_cut_off: bool,
-    /// Mean friction inside of the layer where no other one is above; absent for narrow layers.
+    /// Mean friction inside the layer where no other layer is above; absent for narrow layers.
     #[serde(skip)]
     pub level: Option<Level>,
-    /// Whether the scene has the same friction throughout the layer.
+    /// Whether the scene's friction is uniform in the layer.
     #[serde(skip)]
     pub is_flat: bool,
-    /// What layers are compared by.
+    /// Key for comparing layers.
     #[serde(skip)]
     pub(super) scene: SceneFeel,
 }
 
-/// What a display without fault gives of a layer, to the finger that the scene is meant for.
+/// Perception of a layer with an ideal display, for the finger that the scene is designed for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SceneFeel {
     /// Index of the layer from the bottom.
@@ -68,12 +69,12 @@ pub(super) struct SceneFeel {
     pub(super) contrast: Step,
     /// At 50 mm/s.
     pub(super) texture: Option<Texture>,
-    /// The layers that act where the layer does, a bit each.
+    /// Bit set of the layers that overlap it.
     pub(super) visible: u64,
 }
 
 impl LayerVerdict {
-    /// A layer of which nothing but a contrast is known.
+    /// A verdict from a contrast alone.
     pub(super) fn new(element: &Element, contrast: Step, over: Over) -> Self {
         Self {
             layer: element.title.clone(),
@@ -98,7 +99,7 @@ impl LayerVerdict {
         }
     }
 
-    /// The same of a copy of the layer.
+    /// The same verdict for a copy of the layer.
     pub(super) fn of_copy(&self, copy: &Element) -> Self {
         let visible = self.scene.visible & !(1 << self.scene.layer) | 1 << copy.layer;
         let scene = SceneFeel { layer: copy.layer, visible, ..self.scene };

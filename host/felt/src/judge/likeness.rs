@@ -1,10 +1,10 @@
-//! How much of a signal is in what was felt.
+//! The fraction of a signal that is present in the felt friction.
 
-/// Delays at which felt friction is compared with the scene, in moments: up to 40 ms, which nobody notices
+/// Delays at which felt friction is compared with the scene, in moments: up to 40 ms late, which is imperceptible
 /// (doi:10.1145/2611387), and 10 ms early, in steps of 2.5 ms.
 const DELAYS: [isize; 21] = [-20, -15, -10, -5, 0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80];
 
-/// Covariances of a signal with what was felt.
+/// Covariances of a signal with the felt friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Likeness {
     variance: f64,
@@ -15,8 +15,8 @@ pub(super) struct Likeness {
 }
 
 impl Likeness {
-    /// Adds a signal, of which each value has the number of its moment in the frictions of a run, N. Its mean is taken
-    /// off: a level is no contrast.
+    /// Adds a signal, given as pairs of a moment's index and a value, with the frictions of the run, N. Its mean is
+    /// removed, since a level is not a contrast.
     pub(super) fn add(&mut self, signal: impl Iterator<Item = (usize, f64)> + Clone, scene_n: &[f64], felt_n: &[f64]) {
         let (count, sum) = signal.clone().fold((0.0, 0.0), |(count, sum), (_, value)| (count + 1.0, sum + value));
         let mean = sum / f64::max(count, 1.0);
@@ -32,13 +32,13 @@ impl Likeness {
         }
     }
 
-    /// Slope of felt friction on the signal, at the delay at which it is largest; 0 for a signal that does not change. At
-    /// most 1, since friction that a display adds is no contrast of the scene.
+    /// Slope of felt friction against the signal, at the delay with the largest slope; 0 for a constant signal. At most
+    /// 1, since friction added by a display is not a contrast of the scene.
     pub(super) fn slope(&self) -> f64 {
         if self.variance > 0.0 { (self.felt.iter().copied().fold(0.0, f64::max) / self.variance).min(1.0) } else { 0.0 }
     }
 
-    /// The part of the scene's friction that follows the signal, which is felt: at most all of it.
+    /// Fraction of the scene's friction that follows the signal; at most 1.
     pub(super) fn part_of_scene(&self) -> f64 {
         let felt = self.felt.iter().map(|felt| felt * self.scene.signum()).fold(0.0, f64::max);
         if self.scene.abs() > 0.0 { (felt / self.scene.abs()).min(1.0) } else { 0.0 }

@@ -1,9 +1,9 @@
-//! What a finger felt of one element in a play: its contrast, its texture, the step onto it and its click.
+//! Measures the perception of one element in a play: its contrast, its texture, the step onto it and its click.
 //!
-//! A felt contrast is the contrast of the scene along the way, times the slope of felt friction on it. So the neighbours of
-//! an element, the layers above it, and the finger's own load and noise add no contrast, and a display that plays it in
-//! the wrong place has less of it. A delay that is not noticed takes nothing. Textures are compared by power, since phase
-//! is not perceived.
+//! Felt contrast is the contrast of the scene along the way, times the slope of felt friction against it. Neighbouring
+//! and covering layers, and the finger's own load and noise, thus add no contrast, and a display that renders the
+//! element at the wrong place loses contrast. An imperceptible delay loses none. Textures are compared by power, since
+//! phase is not perceived.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -22,69 +22,71 @@ use super::touch::{Sums, Touch, inner, stretches, ways};
 use super::{Element, Level, Step, Texture, contrast_within, has_texture, total_n};
 use crate::fidelity::FidelitySample;
 
-/// The longest way that counts as one change, m: a second of sliding at a usual speed. Assumed.
+/// The longest way over which a change counts as one, m: a second of sliding at a usual speed. Assumed.
 pub(super) const WAY_MAX_M: f64 = 0.05;
-/// A shorter touch of a layer has no level, in moments: 20 ms.
+/// Shortest touch of a layer that has a level, in moments: 20 ms.
 const TOUCH_MIN: usize = 40;
-/// Nearer to a border a fingertip does not tell on which side a change is, m (its spatial resolution is 1 to 2 mm).
+/// Distance from a border within which a fingertip cannot tell the side of a change, m (its spatial resolution is 1 to
+/// 2 mm).
 pub(super) const FINGERTIP_M: f64 = 0.002;
-/// A smaller change of the scene's friction is none, N: the least amplitude with a threshold is 0.2 mN.
+/// Smallest change of the scene's friction treated as a change, N: the smallest amplitude with a threshold is 0.2 mN.
 const CHANGE_MIN_N: f64 = 4e-4;
-/// Time on either side of a click in which it is sought, in moments: 100 ms.
+/// Search window on either side of a click, in moments: 100 ms.
 const AROUND_CLICK: usize = 200;
 
-/// What a play is measured by.
+/// References for measuring a play.
 pub(super) struct Measure<'e> {
     element: &'e Element,
     /// The whole scene.
     scene: Reference,
     /// The scene without the layers above the element.
     uncovered: Reference,
-    /// The scene below an element that adds to it.
+    /// The layers below the element, if it adds to them.
     below: Option<Reference>,
     borders: Borders,
 }
 
-/// What was felt of an element in a play.
+/// The perception of an element in a play.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
-    /// The largest felt contrast on a way of at most 50 mm within the element; between ways there and back if the layer
-    /// depends on the direction. Without the step onto the element.
+    /// The largest felt contrast on a way of at most 50 mm within the element, or between both directions if the layer
+    /// depends on the direction. The step onto the element is not included.
     pub(super) contrast: Step,
-    /// Whether friction is the same almost everywhere in the element, but for a narrow place that makes the contrast.
+    /// Whether friction is uniform in the element except for a narrow place that makes the contrast.
     pub(super) is_narrow: bool,
-    /// Whether it changes in time, faster than steps do.
+    /// Whether it changes with time, faster than steps do.
     pub(super) is_vibration: bool,
     /// The most noticeable texture.
     pub(super) texture: Option<Texture>,
-    /// The step onto the element that is felt most surely.
+    /// The most certainly perceived step onto the element.
     pub(super) border: Option<MetBorder>,
-    /// The step with which its click begins.
+    /// The initial step of its click.
     pub(super) click: Option<Click>,
     /// Mean felt friction on the element above natural friction, N.
     pub(super) mean_electric_n: f64,
-    /// Mean friction where the element is the uppermost layer, farther than a fingertip's resolution from its border.
+    /// Mean friction where the element is the topmost layer, away from its border by more than a fingertip's
+    /// resolution.
     pub(super) level: Option<Level>,
-    /// The contrast of the scene, to the finger that it is meant for.
+    /// The contrast of the scene for the finger that it is designed for.
     pub(super) scene: SceneContrast,
 }
 
-/// The step with which a click begins.
+/// The initial step of a click.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Click {
     pub(super) step: Step,
-    /// Whether the drive cannot give all of it.
+    /// Whether the drive clamps it.
     pub(super) is_cut_off: bool,
 }
 
-/// Contrasts of the scene itself.
+/// Contrasts of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SceneContrast {
-    /// On ways of at most 50 mm, whatever a fingertip resolves.
+    /// Over ways of at most 50 mm, regardless of a fingertip's resolution.
     pub(super) sharp: Step,
-    /// On the whole way, as far as a fingertip resolves it.
+    /// Over the whole way, at a fingertip's resolution.
     pub(super) whole: Step,
-    /// The layers that act on the way, a bit each.
+    /// Bit set of the layers that act on the way.
     pub(super) visible: u64,
 }
 
@@ -104,8 +106,8 @@ impl<'e> Measure<'e> {
         }
     }
 
-    /// The moments of a play of [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ) samples a second in which the board drove the
-    /// scene.
+    /// Returns the moments of a play, sampled at [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ), in which the board drove
+    /// the scene.
     pub(super) fn runs(&self, samples: &[FidelitySample]) -> Vec<Vec<Moment>> {
         runs(samples, &self.scene, &self.element.program)
     }
@@ -157,8 +159,8 @@ impl<'e> Measure<'e> {
         })
     }
 
-    /// The scene's electric friction along a run without the layers above, N, while the finger is on the element; of a
-    /// layer that adds to those below, what it changes of theirs.
+    /// The scene's electric friction along a run without the layers above, N, while the finger is on the element. For a
+    /// layer that adds to the layers below, the friction that it adds.
     fn own_n(&self, run: &[Moment]) -> Vec<f64> {
         let Element { program, layer, .. } = self.element;
         let own_n = |moment: &Moment| {
@@ -171,8 +173,8 @@ impl<'e> Measure<'e> {
         run.iter().map(own_n).collect()
     }
 
-    /// Measures a stretch of a run on the element: `own_n` is the scene's friction along the run, `felt_n` the friction
-    /// that was felt, as far as a fingertip resolves it.
+    /// Measures a part of a run on the element. `own_n` is the scene's friction along the run, `felt_n` the felt
+    /// friction at a fingertip's resolution.
     fn touch(
         &self,
         run: &[Moment],
@@ -251,7 +253,7 @@ impl<'e> Measure<'e> {
     fn texture(&self, touch: &[Moment], own_n: &[f64]) -> Option<Texture> {
         match self.element.record()?.layer {
             Layer::Vibration(vibration) if vibration.frequency_hz > TEXTURE_MAX_HZ => {
-                // Faster than the moments can show.
+                // Too fast for the sampling rate of the moments.
                 let gain = self.element.program.start.get(self.element.layer).map_or(1.0, |setting| setting.gain);
                 let amplitude_n = 0.5 * f64::from(gain) * f64::from(vibration.high_n - vibration.low_n).abs();
                 let mean_n = |value: fn(&Moment) -> f64| touch.iter().map(value).sum::<f64>() / touch.len() as f64;
@@ -267,7 +269,7 @@ impl<'e> Measure<'e> {
     fn contrast(&self, touch: &Touch, felt: &Sums, [along, against]: &[Sums; 2]) -> (Step, bool) {
         match self.element.record().map(|record| record.layer) {
             Some(Layer::Vibration(_)) if self.is_vibration() => {
-                // Too fast for a step: told as a texture.
+                // Too fast for a step; reported as a texture.
                 let total_n = (felt.natural_n + felt.felt_n) / felt.count;
                 (Step::new(total_n, total_n), false)
             }
@@ -281,7 +283,7 @@ impl<'e> Measure<'e> {
         }
     }
 
-    /// Adds the moments of a touch to those that slide along the axis of the element, or against it.
+    /// Adds the moments of a touch to the sums of its direction along the element's axis.
     fn add_directions(&self, touch: &[Moment], [along, against]: &mut [Sums; 2]) {
         let Some(Layer::Direction(Direction { angle_turns, .. })) = self.element.record().map(|record| record.layer)
         else {
@@ -298,7 +300,7 @@ impl<'e> Measure<'e> {
         }
     }
 
-    /// The click of the element in a run, as far as it was felt.
+    /// The felt part of the element's click in a run.
     fn click(&self, run: &[Moment]) -> Option<Click> {
         let Element { program, layer, .. } = self.element;
         self.element.record()?.layer.click()?;
@@ -332,15 +334,15 @@ impl<'e> Measure<'e> {
     }
 }
 
-/// The surer one of two.
+/// The one of two that is perceived more certainly.
 pub(super) fn surest<T>(one: Option<T>, other: Option<T>, step: impl Fn(&T) -> Step) -> Option<T> {
     one.into_iter().chain(other).max_by(|one, other| step(one).cmp_felt(&step(other)))
 }
 
-/// From one place at which a change of the scene is sought to the next, in samples: 1 ms.
+/// Spacing of the places at which a change of the scene is sought, in samples: 1 ms.
 const PLACE_SAMPLES: usize = 4;
 
-/// Whether the friction of a scene changes along the way of a play.
+/// Whether the friction of a scene changes along a play's way.
 pub fn changes_along(program: &Program, samples: &[FidelitySample]) -> bool {
     let scene = Reference::at_start(program);
     let places = samples.chunks(PLACE_SAMPLES).filter_map(context);

@@ -1,13 +1,13 @@
-//! The judge: what a person will feel of each element of a scene, as far as published studies can tell.
+//! The judge: predicts the perception of each element of a scene from published studies.
 //!
-//! [`strokes`] sends a finger across an element, at 20, 50 and 100 mm/s; [`verdict`] compares what it felt in these
+//! [`strokes`] moves a finger across an element, at 20, 50 and 100 mm/s. [`verdict`] compares felt friction in these
 //! plays with the reference. This crate has no simulator: [`judge`] calls back for each play. `frixel check`, the page
-//! and `frixel score` judge with these two. `frixel play` judges its own recording with [`in_play`].
+//! and `frixel score` use these two; `frixel play` judges its own recording with [`in_play`].
 //!
-//! A change of friction that a fingertip resolves, 2 mm, is judged as a step, in Weber fractions of the total friction.
-//! A faster one is judged as a texture, against the threshold of touch at its frequency and the finger's own noise.
-//! An element is felt by its contrast, its texture, its border or its click, at the best of the three speeds. The
-//! thresholds and their sources stand in one file, `thresholds.rs`.
+//! A change of friction that a fingertip resolves (2 mm) is judged as a step, in Weber fractions of the total friction.
+//! A faster one is judged as a texture, against the threshold of touch at its frequency and the finger's own noise. An
+//! element is perceived by its contrast, texture, border or click, at the best of the three speeds. All thresholds and
+//! their sources are in `thresholds.rs`.
 
 mod advice;
 mod alike;
@@ -55,19 +55,20 @@ pub use thresholds::{
     weber_steps_text,
 };
 
-/// Samples a second of the friction along a stroke: four times the highest frequency with a threshold.
+/// Sampling rate of the friction along a stroke, Hz: four times the highest frequency with a threshold.
 pub(crate) const SAMPLE_HZ: f64 = 2000.0;
 
-/// How a judgement is made.
+/// Whether a judgement includes advice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advice {
-    /// Only verdicts.
+    /// Verdicts only.
     Omitted,
-    /// For what is not surely felt by its size or strength, a change is sought that makes it felt.
+    /// For an element that is not certainly perceived because of its size or strength, seeks a change that makes it
+    /// perceptible.
     Sought,
 }
 
-/// Plays a program under a stroke, and returns [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ) samples a second.
+/// Plays a program under a stroke, and returns samples at [`SAMPLE_HZ`](crate::fidelity::SAMPLE_HZ).
 pub type Play<'p, E> = dyn FnMut(&Program, &Stroke) -> Result<Vec<FidelitySample>, E> + 'p;
 
 /// Judges every layer of a program. Copies of a layer are judged once.
@@ -100,12 +101,12 @@ fn judge_element<E>(element: &Element, advice: Advice, play: &mut Play<'_, E>) -
             return Ok(LayerVerdict { advice: Some(format!("felt with {}", change.text)), ..found });
         }
     }
-    let advice = Some("no size or strength within the drive's reach was found that is felt".to_owned());
+    let advice = Some("no size or strength within the drive's reach makes it felt".to_owned());
     Ok(LayerVerdict { advice, ..found })
 }
 
-/// Whether an element is felt at one of the speeds. The fastest stroke takes an eighth of the time of all, and is played
-/// first.
+/// Whether an element is perceived at one of the speeds. The fastest stroke takes an eighth of the total time, and is
+/// played first.
 fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
     let strokes = strokes(element);
     let mut felt = vec![Vec::new(); strokes.len()];
@@ -120,7 +121,7 @@ fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
     Ok(false)
 }
 
-/// Judges an element by what was felt on its [`strokes`]. The samples hold the reference as well.
+/// Judges an element by the felt friction on its [`strokes`]. The samples also contain the reference.
 pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict {
     let measure = Measure::new(element);
     let speeds = SPEEDS_M_PER_S.iter().zip(felt);
@@ -134,10 +135,10 @@ pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict 
     of_plays(element, over, &plays)
 }
 
-/// Judges the elements of a program by what was felt in one play that nothing changed, whatever its finger, load and
-/// touch source. An element is left out if the finger never slid on it while the board drove the scene. So is one whose
-/// friction depends on the speed, since one play has no second speed to compare with. `goes_on` is asked before each
-/// element; when it breaks, there is no judgement.
+/// Judges the elements of a program by one unchanged play, with any finger, load and touch source. An element is
+/// omitted if the finger never slid on it while the board drove the scene. It is also omitted if its friction depends
+/// on the speed, since a single play has no second speed to compare with. `goes_on` is called before each element; if
+/// it breaks, there is no judgement.
 pub fn in_play(program: &Program, samples: &[FidelitySample], goes_on: GoesOn<'_>) -> Option<Vec<LayerVerdict>> {
     let slides = |speed_m_per_s: f64| speed_m_per_s >= SLIDE_MIN_M_PER_S;
     let sliding = |sample: &FidelitySample| FidelitySample {
@@ -159,7 +160,7 @@ pub fn in_play(program: &Program, samples: &[FidelitySample], goes_on: GoesOn<'_
     elements.filter(|element| element.over() != Over::Speed).map(judged).collect()
 }
 
-/// The verdict on an element by the play in which it was felt most surely.
+/// The verdict on an element from the play in which it was perceived most certainly.
 fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
     if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
         return of_stream(element, &stream);
@@ -198,33 +199,34 @@ fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
     }
 }
 
-/// Most layers that a sentence names; more are counted.
+/// Largest number of layers that a sentence names; the others are counted.
 pub(crate) const NAMED_MAX: usize = 3;
 
-/// A slower finger rests, as for the board, m/s: friction does not follow the scene before it slides.
+/// Speed below which the finger counts as resting, as on the board, m/s: friction does not follow the scene before it
+/// slides.
 const SLIDE_MIN_M_PER_S: f64 = 2e-3;
 
 /// Smallest difference of two levels of friction in a scene that is not treated as flat, in Weber steps.
 pub const FLAT_WEBER_STEPS: f64 = 0.1;
 
-/// What was felt of an element in one play, and what a display without fault would have given.
+/// Perception of an element in one play, with the actual and with an ideal display.
 #[derive(Clone, Copy)]
 struct Played {
-    /// Absent where the speed is not one of the three.
+    /// Absent if the speed is not one of the three.
     speed_m_per_s: Option<f64>,
     felt: Measured,
     faultless: Measured,
 }
 
 impl Played {
-    /// `None` if the finger was never on the element.
+    /// Measures a play; `None` if the finger was never on the element.
     fn of(measure: &Measure, speed_m_per_s: Option<f64>, runs: &[Vec<Moment>]) -> Option<Self> {
         let faultless = measure.of(&moment::faultless(runs))?;
         Some(Self { speed_m_per_s, felt: measure.of(runs)?, faultless })
     }
 }
 
-/// Makes the contrast of a layer that depends on the speed that between the slowest and the fastest play.
+/// Sets the contrast of a speed-dependent layer to that between the slowest and the fastest play.
 fn over_speed(element: &Element, plays: &mut [Played]) {
     let natural_n = element.program.reach.natural_friction_n;
     let contrast = |measured: fn(&Played) -> Measured, plays: &[Played]| {
@@ -241,7 +243,7 @@ fn over_speed(element: &Element, plays: &mut [Played]) {
     }
 }
 
-/// Nobody knows what a program will stream.
+/// The verdict on a stream, whose samples are unknown in advance.
 fn of_stream(element: &Element, stream: &Stream) -> LayerVerdict {
     let program = &element.program;
     let gain = program.start.get(element.layer).map_or(1.0, |setting| f64::from(setting.gain));
@@ -256,7 +258,7 @@ impl Element {
         self.record().is_some_and(|record| record.layer.is_streamed())
     }
 
-    /// What its contrast is a change with.
+    /// The variable over which its contrast is measured.
     fn over(&self) -> Over {
         match self.record().map(|record| record.layer) {
             Some(Layer::Speed(_)) => Over::Speed,
@@ -281,12 +283,12 @@ impl Measured {
         [Some(self.contrast), border, self.click.map(|click| click.step)].into_iter().flatten()
     }
 
-    /// The surest way in which it is felt.
+    /// The most certain way in which it is perceived.
     fn verdict(&self) -> Verdict {
         Verdict::of_any(self.steps().map(|step| step.verdict).chain(self.texture.map(|texture| texture.verdict)))
     }
 
-    /// Orders by how surely something is felt, and then by its size.
+    /// Orders by certainty of perception, and then by size.
     fn cmp_felt(&self, other: &Self) -> Ordering {
         let size = |measured: &Self| {
             felt_size(measured.steps().map(|step| step.weber_steps.abs()).fold(0.0, f64::max), measured.texture)
@@ -315,7 +317,7 @@ pub fn starts_off(program: &Program) -> Option<String> {
 fn notes(program: &Program) -> Vec<String> {
     let changes = Reference::new(program).changes_by_itself();
     let still = changes.then(|| {
-        "Only a sliding finger feels vibrations and streams: of people whose finger rests, 30 % feel 125 Hz (Dryad \
+        "Only a sliding finger feels vibrations and streams: 30 % of people feel 125 Hz with a resting finger (Dryad \
          9ghx3ffgp)."
             .to_owned()
     });

@@ -6,20 +6,20 @@ use frixel_scene::reference::{Context, Reference, direction_of};
 use super::{SAMPLE_HZ, visible_layers};
 use crate::fidelity::{self, FidelitySample, settled};
 
-/// Moments a second: as many as a program is judged with before it is played.
+/// Moments per second: the same rate as for judging a program before it is played.
 pub(super) const MOMENT_HZ: f64 = SAMPLE_HZ;
-/// Samples of a moment.
+/// Samples per moment.
 const SAMPLES: usize = (fidelity::SAMPLE_HZ / MOMENT_HZ) as usize;
 
 /// A moment of a play: means over half a millisecond. Frictions are electric parts, N.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment {
     pub(super) context: Context,
-    /// The layers that have an effect at this place, a bit each.
+    /// Bit set of the layers that have an effect at this place.
     pub(super) visible: u64,
-    /// Friction of the scene, under its finger.
+    /// Friction of the scene for its own finger.
     pub(super) scene_n: f64,
-    /// What a display without fault would have given.
+    /// Friction with an ideal display.
     pub(super) reference_n: f64,
     pub(super) felt_n: f64,
     /// Natural friction of the finger.
@@ -27,7 +27,7 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    /// `samples` are those of the moment; `None` without any, or with the finger off the screen.
+    /// Creates a moment from its samples; `None` if there are none, or if the finger is off the screen.
     fn of(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Option<Self> {
         let context = context(samples)?;
         let mean =
@@ -53,7 +53,7 @@ impl Moment {
     }
 }
 
-/// How far the finger has slid at each of some moments since before the first one, m.
+/// Distance slid at each moment since before the first one, m.
 pub(super) fn ways_m<'m>(moments: impl Iterator<Item = &'m Moment>) -> impl Iterator<Item = f64> {
     moments.scan(0.0, |way_m, moment| {
         *way_m += moment.context.speed_m_per_s / MOMENT_HZ;
@@ -61,8 +61,8 @@ pub(super) fn ways_m<'m>(moments: impl Iterator<Item = &'m Moment>) -> impl Iter
     })
 }
 
-/// The finger at the last of some samples, sliding the way from the first one to it; `None` without any, or with the
-/// finger off the screen.
+/// The finger at the last of some samples, with its motion since the first one; `None` if there are none, or if the
+/// finger is off the screen.
 pub(super) fn context(samples: &[FidelitySample]) -> Option<Context> {
     let (first, last) = (samples.first()?, samples.last()?);
     let FidelitySample { t_s, x_m, y_m, speed_m_per_s, .. } = *last;
@@ -75,13 +75,13 @@ pub(super) fn electric_n(reference: &Reference, program: &Program, context: &Con
     reference.electric_friction_at_n(context).clamp(0.0, program.reach.electric_friction_max_n)
 }
 
-/// The same moments under a display without fault.
+/// The same moments with an ideal display.
 pub(super) fn faultless(runs: &[Vec<Moment>]) -> Vec<Vec<Moment>> {
     let faultless = |moment: &Moment| Moment { felt_n: moment.reference_n, ..*moment };
     runs.iter().map(|run| run.iter().map(faultless).collect()).collect()
 }
 
-/// The stretches of a play in which the board drives the scene.
+/// The parts of a play in which the board drives the scene.
 pub(super) fn runs(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Vec<Vec<Moment>> {
     let moments = |run: &[FidelitySample]| {
         run.chunks_exact(SAMPLES).filter_map(|samples| Moment::of(samples, scene, program)).collect()

@@ -1,4 +1,4 @@
-//! Why an element is felt less surely than its friction suggests.
+//! Reasons why an element is perceived less certainly than its friction suggests.
 
 use frixel_layers::Burst;
 use serde::Serialize;
@@ -8,70 +8,70 @@ use super::measure::{FINGERTIP_M, Measured, WAY_MAX_M};
 use super::texture::SUMMED_S;
 use super::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict};
 
-/// How long a finger is on an element, s: a burst that comes less often is missed by some strokes. Assumed.
+/// Duration of a touch of an element, s: strokes may miss a less frequent burst. Assumed.
 const TOUCH_S: f64 = 1.0;
-/// A shorter burst is not felt, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
+/// Shortest perceptible burst, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
 const BURST_MIN_S: f64 = 2e-3;
 
-/// Why an element is not surely felt, or felt otherwise than it is written.
+/// A reason why an element is not certainly perceived, or not as designed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum Reason {
     /// The element is too small.
     TooSmall {
-        /// What takes part of the change.
+        /// The cause of the reduced change.
         limit: SizeLimit,
         /// The change of the scene, in Weber steps.
         weber_steps: f64,
     },
     /// The friction changes too slowly.
     TooSlow {
-        /// The longest way that counts as one change, mm.
+        /// The longest way over which a change counts as one, mm.
         way_mm: f64,
-        /// The change on the whole way, in Weber steps.
+        /// The change over the whole way, in Weber steps.
         weber_steps: f64,
     },
     /// The change is too small for a person to notice.
     TooWeak,
-    /// Friction is the same throughout, and there is no border.
+    /// Friction is uniform, and there is no border.
     Flat,
     /// A burst is too short.
     TooShort {
         /// Its duration, ms.
         duration_ms: f64,
-        /// The shortest one that is felt, ms.
+        /// The shortest perceptible duration, ms.
         least_ms: f64,
     },
     /// A touch may fall between two bursts.
     TooRare {
         /// The pause between two bursts, ms.
         pause_ms: f64,
-        /// How long a touch lasts, ms.
+        /// The duration of a touch, ms.
         touch_ms: f64,
     },
     /// No study covers it.
     NotStudied,
-    /// It is felt as a vibration, and no stripe is felt where it is.
+    /// It is perceived as a vibration, and not as stripes in place.
     Buzz,
 }
 
-/// What takes part of a change that is too small.
+/// The cause of a reduced change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeLimit {
     /// A fingertip, which resolves 2 mm.
     Fingertip,
-    /// The touch source, whose reports are late, rare and sometimes lost.
+    /// The touch source, whose reports are late, infrequent and sometimes lost.
     TouchSource,
 }
 
 impl Reason {
-    /// Whether a larger or a stronger element would be felt more surely.
+    /// Whether a larger or stronger element would be perceived more certainly.
     pub(super) fn is_size_or_strength(&self) -> bool {
         matches!(self, Self::TooSmall { .. } | Self::TooSlow { .. } | Self::TooWeak)
     }
 
-    /// The surest verdict that the reason allows by itself.
+    /// The most certain verdict that this reason allows.
     fn most(&self) -> Verdict {
         match self {
             Self::TooShort { duration_ms, .. } if *duration_ms < 1e3 * BURST_MIN_S => Verdict::NotFelt,
@@ -81,8 +81,8 @@ impl Reason {
     }
 }
 
-/// The verdict on an element that a finger feels as `felt` while it is there, where a display without fault would have
-/// given `faultless`; and the reasons.
+/// The verdict and its reasons for an element, from its perception with the actual display (`felt`) and with an ideal
+/// one (`faultless`).
 pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (Verdict, Vec<Reason>) {
     let verdict = felt.verdict();
     let scene = felt.scene;
@@ -125,13 +125,13 @@ fn is_surer_than(one: Verdict, other: Verdict) -> bool {
     one.sureness() > other.sureness()
 }
 
-/// The surest verdict on an element that is smaller than a fingertip resolves: less than half of that is too small, and
-/// less than the whole near the threshold at best. A click is felt wherever it is.
+/// The most certain verdict on an element smaller than a fingertip's resolution: below half of it, too small; below all
+/// of it, at best near the threshold. A click is perceived anywhere.
 fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
     if felt.click.is_some_and(|click| click.step.verdict == Verdict::Felt) {
         return None;
     }
-    // Sizes of records are `f32`.
+    // Sizes in records are `f32`.
     match element.extent_m() / FINGERTIP_M - 1e-6 {
         part if part <= 0.5 => Some(Verdict::NotFelt),
         part if part < 1.0 - 2e-6 => Some(Verdict::NearThreshold),
@@ -139,13 +139,13 @@ fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
     }
 }
 
-/// Whether stripes that are strong enough are felt as a vibration only.
+/// Whether sufficiently strong stripes are perceived as a vibration only.
 fn is_buzz(felt: &Measured) -> bool {
     let is_felt = |step: Step| step.verdict == Verdict::Felt;
     !felt.is_vibration && is_felt(felt.scene.sharp) && !felt.steps().any(is_felt)
 }
 
-/// Whether bursts are too short: if they lasted longer, their power would be enough.
+/// Whether bursts are too short, although their power would suffice if they lasted longer.
 fn too_short(burst: &Burst, felt: &Measured) -> Option<Reason> {
     let on_s = f64::from(burst.on_s);
     let faint = felt.texture.filter(|texture| texture.verdict != Verdict::Felt);
@@ -159,7 +159,7 @@ fn too_short(burst: &Burst, felt: &Measured) -> Option<Reason> {
     is_short.then_some(Reason::TooShort { duration_ms: 1e3 * on_s, least_ms })
 }
 
-/// Whether a touch may fall between two bursts. A program starts those that are `triggered` when it wants them felt.
+/// Whether a touch may fall between two bursts. Bursts that are `triggered` start on demand.
 fn too_rare(burst: &Burst, triggered: bool) -> Option<Reason> {
     let pause_s = f64::from(burst.period_s) - f64::from(burst.on_s);
     let rare = Reason::TooRare { pause_ms: 1e3 * pause_s, touch_ms: 1e3 * TOUCH_S };

@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::thresholds::{TEXTURE_MIN_HZ, texture_threshold_n};
 use crate::spectrum::Spectrum;
 
-/// Least number of samples of which a component is sought.
+/// Smallest number of samples for finding a component.
 const SAMPLES_MIN: usize = 64;
-/// A component with a smaller part of the signal's power is a harmonic, or numerical noise, of what is felt. Assumed.
+/// Smallest fraction of the signal's power; a weaker component is a harmonic or numerical noise. Assumed.
 const POWER_PART_MIN: f64 = 0.05;
 /// Half width of a component, in bins: a Hann window spreads a sine over two bins on either side.
 const SPREAD_BINS: usize = 2;
@@ -22,9 +22,9 @@ pub(super) struct Component {
     pub(super) amplitude: f64,
 }
 
-/// The component that exceeds the threshold of touch by the largest factor after `gain`, a factor by frequency in Hz,
-/// which its amplitude contains; where no frequency has a threshold, the component of the largest amplitude. `None` for
-/// a signal that is too short, or has no component above [`TEXTURE_MIN_HZ`] with 5 % of its power.
+/// Returns the component that exceeds the threshold of touch by the largest factor. `gain` is a factor by frequency in
+/// Hz, which is applied to its amplitude. If no frequency has a threshold, returns the component of the largest
+/// amplitude. `None` if the signal is too short, or has no component above [`TEXTURE_MIN_HZ`] with 5 % of its power.
 pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64) -> f64) -> Option<Component> {
     if samples.len() < SAMPLES_MIN {
         return None;
@@ -57,19 +57,19 @@ pub(crate) fn component_power(spectrum: &Spectrum, frequency_hz: f64) -> f64 {
     power.get(around(bin, power.len())).unwrap_or_default().iter().sum()
 }
 
-/// The bins of a component whose largest bin this is.
+/// The bins of a component with its largest bin at `bin`.
 fn around(bin: usize, bins: usize) -> Range<usize> {
     let low = ((bin as f64 / SIXTH_OF_OCTAVE).ceil() as usize).min(bin.saturating_sub(SPREAD_BINS));
     let high = ((bin as f64 * SIXTH_OF_OCTAVE).floor() as usize).max(bin + SPREAD_BINS);
     low..(high + 1).min(bins)
 }
 
-/// How far a component is above the threshold; components without a threshold come after all others.
+/// Ratio of a component to its threshold; components without a threshold come last.
 fn salience(component: &Component) -> f64 {
     salience_of(component.amplitude, texture_threshold_n(component.frequency_hz))
 }
 
-/// How far an amplitude is above its threshold, to compare textures by.
+/// Ratio of an amplitude to its threshold, for comparing textures.
 pub(super) fn salience_of(amplitude_n: f64, threshold_n: Option<f64>) -> f64 {
     threshold_n.map_or_else(|| 1e-6 * amplitude_n, |threshold_n| amplitude_n / threshold_n)
 }

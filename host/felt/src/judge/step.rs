@@ -11,14 +11,13 @@ use super::thresholds::lag_gain;
 use super::{SAMPLE_HZ, Verdict, natural_noise_amplitude_n, spectrum, texture_threshold_n, weber_steps};
 use crate::percentile::percentiles;
 
-/// A texture of a smaller amplitude is not mentioned, N: a tenth of the smallest threshold.
+/// Smallest amplitude of a reported texture, N: a tenth of the smallest threshold.
 const AMPLITUDE_MIN_N: f64 = 2e-5;
-/// Where the 5th and the 95th percentile are nearer to one another than this part of the whole range, the friction is
-/// the same almost everywhere but for a narrow place, such as a ridge. Noise, whose extremes are rare, stays above it.
-/// Assumed.
+/// If the distance between the 5th and the 95th percentile is below this fraction of the whole range, friction is
+/// uniform except for a narrow place, such as a ridge. Noise, whose extremes are rare, stays above it. Assumed.
 const NARROW_PART: f64 = 0.3;
 
-/// What friction changes with.
+/// The variable with which friction changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Over {
@@ -34,12 +33,12 @@ pub enum Over {
     Samples,
 }
 
-/// The times of a vibration's bursts.
+/// Timing of a vibration's bursts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BurstTimes {
-    /// How long a burst lasts, ms.
+    /// Duration of a burst, ms.
     pub on_ms: f64,
-    /// From the start of a burst to that of the next one, ms.
+    /// Period of the bursts, ms.
     pub period_ms: f64,
 }
 
@@ -54,7 +53,7 @@ pub struct Step {
     pub contrast_n: f64,
     /// The change in Weber steps, `ln(to / from) / ln 1.11`.
     pub weber_steps: f64,
-    /// Below 1 step not felt, up to 2.3 near the threshold.
+    /// Below 1 step not felt; up to 2.3 steps near the threshold.
     pub verdict: Verdict,
 }
 
@@ -66,23 +65,23 @@ impl Step {
         Self { from_n, to_n, contrast_n: to_n - from_n, weber_steps: steps, verdict }
     }
 
-    /// Orders steps by how surely they are felt, and then by their size.
+    /// Orders steps by certainty of perception, and then by size.
     pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
         let by_verdict = self.verdict.sureness().cmp(&other.verdict.sureness());
         by_verdict.then(self.weber_steps.abs().total_cmp(&other.weber_steps.abs()))
     }
 }
 
-/// The most noticeable component of the friction under a finger that slides at a constant speed.
+/// The most noticeable component of the friction under a finger sliding at constant speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Texture {
     /// Sliding speed, mm/s.
     pub speed_mm_per_s: f64,
     /// Frequency under the finger, Hz.
     pub frequency_hz: f64,
-    /// Amplitude of the felt friction, behind the lag of friction, N.
+    /// Amplitude of the felt friction, after the lag of friction, N.
     pub amplitude_n: f64,
-    /// The smallest amplitude that is felt at this frequency, N; absent where there is no measurement.
+    /// The smallest perceptible amplitude at this frequency, N; absent without a measurement.
     pub threshold_n: Option<f64>,
     /// Amplitude of the finger's own noise in the third of an octave around the frequency, N.
     pub natural_noise_n: f64,
@@ -104,13 +103,13 @@ pub struct BorderStep {
 /// A mean total friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Level {
-    /// Of the scene, N.
+    /// Friction of the scene, N.
     pub scene_n: f64,
-    /// As it was felt, N.
+    /// Felt friction, N.
     pub felt_n: f64,
 }
 
-/// The contrast along a slide, and whether only a narrow place makes it; `None` without any friction.
+/// The contrast along a slide, and whether a narrow place makes it; `None` without samples.
 pub(super) fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step, bool)> {
     let [least_n, low_n, high_n, most_n] = percentiles(friction_n.to_vec(), [0, 5, 95, 100])?;
     let is_narrow = high_n - low_n < NARROW_PART * (most_n - least_n);
@@ -118,8 +117,8 @@ pub(super) fn contrast_within(friction_n: &[f64], is_edge: bool) -> Option<(Step
     Some((if is_whole { Step::new(least_n, most_n) } else { Step::new(low_n, high_n) }, is_narrow))
 }
 
-/// Whether any of these layers repeats or changes by itself. The others have steps and lone ridges, whose spectrum is
-/// not a texture.
+/// Whether any of these layers is periodic or changes by itself. The others have steps and single ridges, whose
+/// spectrum is not a texture.
 pub(super) fn has_texture(layers: u64, program: &Program) -> bool {
     let mut records = program.records.iter().enumerate().filter(|(number, _)| layers >> number & 1 == 1);
     records.any(|(_, record)| {
@@ -131,12 +130,12 @@ pub(super) fn has_texture(layers: u64, program: &Program) -> bool {
 }
 
 impl Texture {
-    /// How far it is above the threshold, to compare textures by.
+    /// Ratio of the amplitude to the threshold, for comparing textures.
     pub fn salience(&self) -> f64 {
         spectrum::salience_of(self.amplitude_n, self.threshold_n)
     }
 
-    /// Judges a felt amplitude in newtons at a frequency; `None` for one that is not mentioned.
+    /// Judges a felt amplitude in newtons at a frequency; `None` if it is too small to report.
     pub(super) fn new(speed_mm_per_s: f64, frequency_hz: f64, amplitude_n: f64) -> Option<Self> {
         (amplitude_n >= AMPLITUDE_MIN_N).then(|| Self {
             speed_mm_per_s,
@@ -149,20 +148,20 @@ impl Texture {
     }
 }
 
-/// Frequency in Hz and amplitude in newtons, before the lag of friction, of the component of the friction along a slide
-/// that is the most noticeable one behind that lag.
+/// Returns frequency in Hz and amplitude in newtons, before the lag of friction, of the component along a slide that is
+/// most noticeable after that lag.
 pub(super) fn texture_component(friction_n: &[f64], speed_mm_per_s: f64) -> Option<(f64, f64)> {
     let behind_lag = |frequency_hz: f64| lag_gain(speed_mm_per_s / frequency_hz);
     let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ, behind_lag)?;
     Some((component.frequency_hz, component.amplitude / behind_lag(component.frequency_hz)))
 }
 
-/// Total friction, in newtons, with the electric friction clamped to what the drive can give.
+/// Total friction, in newtons, with the electric friction clamped to the drive's reach.
 pub(super) fn total_n(program: &Program, electric_n: f64) -> f64 {
     program.reach.natural_friction_n + electric_n.clamp(0.0, program.reach.electric_friction_max_n)
 }
 
-/// The layers that have an effect at a place, a bit each.
+/// Bit set of the layers that have an effect at a place.
 pub(super) fn visible_layers(reference: &Reference, x_m: f64, y_m: f64) -> u64 {
     reference.visible_at(x_m, y_m).fold(0, |visible, layer| visible | 1 << layer)
 }

@@ -1,4 +1,4 @@
-//! The judge on displays without a board: each plays the place where the finger was some time ago, with a gain.
+//! Tests the judge on displays without a board: each renders an earlier place of the finger, with a gain.
 
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::tests::compiled;
 const STRIPES: &str = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 12\nlow_fraction = 0\nhigh_fraction = 0.9\n";
 const WEAVE: &str = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 1\nlow_fraction = 0\nhigh_fraction = 0.4\n";
 
-/// A display that is late, and gives a part of the friction.
+/// A display with a delay and a gain below 1.
 #[derive(Clone, Copy)]
 struct Display {
     gain: f64,
@@ -94,7 +94,7 @@ fn a_texture_is_felt_as_far_as_its_power_is_played() {
     let texture = |gain, late_s| Display { gain, late_s }.only(WEAVE).texture.unwrap();
     let whole = texture(1.0, 0.005);
     assert!((texture(0.2, 0.0).amplitude_n / whole.amplitude_n - 0.2).abs() < 0.01);
-    // What a display adds is no texture of the scene.
+    // Friction added by a display is not a texture of the scene.
     assert!((texture(3.0, 0.0).amplitude_n / whole.amplitude_n - 1.0).abs() < 0.01);
 }
 
@@ -148,7 +148,7 @@ fn rare_and_short_bursts_have_their_reasons() {
     };
     let (lasting, rare) = (vibration(""), vibration("burst = { period_ms = 5000, on_ms = 100, ramp_ms = 10 }\n"));
     assert_eq!((lasting.verdict, rare.verdict), (Verdict::Felt, Verdict::NearThreshold));
-    // The pauses are part of what is felt: a burst fills less than the time in which touch sums.
+    // The pauses are perceived too: a burst fills less than the integration time of touch.
     let [lasting_n, rare_n] = [&lasting, &rare].map(|found| found.texture.unwrap().amplitude_n);
     assert!((0.6..0.95).contains(&(rare_n / lasting_n)), "{rare_n} of {lasting_n}");
     assert!(matches!(rare.reasons[..], [Reason::TooRare { .. }]), "{rare:?}");
@@ -182,7 +182,7 @@ fn a_ridge_is_found_wherever_it_lies_on_a_long_screen() {
     assert_eq!(found.verdict, Verdict::Felt, "{found:?}");
 }
 
-/// The one who asks is at a terminal of 80 by 40 characters, which wraps what is longer.
+/// The output is for a terminal of 80 by 40 characters, which wraps longer lines.
 #[test]
 fn many_layers_fit_a_terminal() {
     let layer = |number: usize| {

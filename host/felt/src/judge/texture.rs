@@ -1,16 +1,16 @@
-//! Textures that a finger felt.
+//! Textures perceived by a finger.
 
 use super::moment::{MOMENT_HZ, Moment};
 use super::{Texture, component_power, texture_component};
 use crate::spectrum::Spectrum;
 
-/// Moments of which a spectrum is taken: 256 ms, in which the speed of a hand changes little.
+/// Number of moments in a spectrum: 256 ms, in which a hand's speed changes little.
 const MOMENTS: usize = 512;
-/// A shorter burst counts by its power in this time, s: that of the spectrum's Hann window, three eighths of it. The
-/// threshold of touch falls with the duration up to about a quarter of a second (Verrillo 1965, doi:10.1121/1.1909458;
-/// quoted from memory), so that short bursts count for too much rather than too little.
+/// Integration time, s: a shorter burst counts by its power within this time. It is that of the spectrum's Hann window,
+/// three eighths of it. The threshold of touch falls with the duration up to about a quarter of a second (Verrillo
+/// 1965, doi:10.1121/1.1909458; quoted from memory), so short bursts are overestimated rather than underestimated.
 pub(super) const SUMMED_S: f64 = 0.375 * MOMENTS as f64 / MOMENT_HZ;
-/// A shorter touch has no texture, in moments: 64 ms.
+/// Shortest touch with a texture, in moments: 64 ms.
 const MOMENTS_MIN: usize = 128;
 
 /// The most noticeable texture in each quarter of a second of a touch of a layer. `own_n` is the friction of the scene
@@ -20,7 +20,7 @@ pub(super) fn of_touch(touch: &[Moment], own_n: &[f64]) -> impl Iterator<Item = 
     parts.filter(|(moments, _)| moments.len() >= MOMENTS_MIN).filter_map(|(moments, own_n)| of_part(moments, own_n))
 }
 
-/// The texture of the scene, as far as its power is felt. Power that the display adds is no texture of the layer.
+/// The texture of the scene, limited to its felt power. Power added by the display is not a texture of the layer.
 fn of_part(moments: &[Moment], own_n: &[f64]) -> Option<Texture> {
     let speed = moments.iter().map(|moment| moment.context.speed_m_per_s).sum::<f64>() / moments.len() as f64;
     let (frequency_hz, amplitude_n) = texture_component(own_n, 1e3 * speed)?;

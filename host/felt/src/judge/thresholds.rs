@@ -1,17 +1,17 @@
-//! Numbers about what fingers feel, with their sources. Those quoted from memory say so, and are to be checked before
-//! anyone builds on them; `docs/truth.md` lists them.
+//! Thresholds of touch, with their sources. Those quoted from memory are marked, and must be checked before anyone
+//! relies on them; `docs/truth.md` lists them.
 
 use frixel_hil_sim::RELAXATION_LENGTH_M;
 use serde::{Deserialize, Serialize};
 
-/// Weber fraction of friction: the smallest change of the total friction that is felt, for a transient decrease
-/// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). That it holds for rises and for changes over the place is assumed. It
-/// says nothing about fine textures.
+/// Weber fraction of friction: the smallest perceptible change of the total friction, for a transient decrease
+/// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). It is assumed to hold for increases and for changes over place. It
+/// does not apply to fine textures.
 pub(crate) const WEBER_FRACTION: f64 = 0.11;
 
 /// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
 /// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it
-/// is felt whichever of the three studies a person is like.
+/// is perceptible according to all three studies.
 pub(super) const WEBER_FRACTION_SAFE: f64 = 0.27;
 
 /// Difference threshold of electrovibration voltage, dB (doi:10.1038/s41598-018-22865-x).
@@ -24,14 +24,14 @@ pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
 /// Band of [`NATURAL_NOISE_RMS_N`], Hz.
 const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
 
-/// Below this frequency, Hz, a change of friction counts as a step. Above it, it counts as a texture. Assumed; it is the
-/// lowest frequency with a threshold.
+/// Frequency below which a change of friction counts as a step, and above which it counts as a texture, Hz. Assumed; it
+/// is the lowest frequency with a threshold.
 pub(super) const TEXTURE_MIN_HZ: f64 = 10.0;
 
 /// The highest frequency with a threshold, Hz.
 pub(super) const TEXTURE_MAX_HZ: f32 = 500.0;
 
-/// Smallest vibration that is felt: frequency in Hz and displacement amplitude in micrometres, from the four-channel
+/// Smallest perceptible vibration: frequency in Hz and displacement amplitude in micrometres, from the four-channel
 /// model of Bolanowski et al. 1988 (doi:10.1121/1.397184). Quoted from memory.
 const DISPLACEMENT_THRESHOLD_UM: [(f64, f64); 8] =
     [(10.0, 16.0), (20.0, 10.0), (40.0, 4.0), (80.0, 1.0), (160.0, 0.2), (250.0, 0.1), (400.0, 0.16), (500.0, 0.25)];
@@ -39,19 +39,19 @@ const DISPLACEMENT_THRESHOLD_UM: [(f64, f64); 8] =
 /// Stiffness of a fingertip against tangential motion, N/m (Wiertlewski and Hayward 2012,
 /// doi:10.1016/j.jbiomech.2012.05.045). Quoted from memory.
 const TANGENTIAL_STIFFNESS_N_PER_M: f64 = 1.0e3;
-/// Damping of a fingertip against tangential motion, N s/m. Same source, quoted from memory too.
+/// Damping of a fingertip against tangential motion, N s/m. Same source, also quoted from memory.
 const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 
 /// Factor by which the threshold may be wrong in either direction: people differ by a factor of 2, and the thresholds
 /// were measured with a vibrating probe, not with friction. Assumed.
 pub const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 
-/// What *maybe* means, for a person. It is about a range of contrast, from the smallest Weber fraction of the studies to
-/// the largest one, or a factor of 3 on both sides of a texture's threshold; no study says which share of people is how
-/// far above it.
+/// Meaning of *maybe* for users. It is a range of contrast: from the smallest to the largest Weber fraction of the
+/// studies, or a factor of 3 on both sides of a texture's threshold. No study gives the distribution of thresholds
+/// among people.
 pub(crate) const MAYBE: &str = "maybe: near the threshold, where some people or some strokes will not notice it";
 
-/// Whether a person feels something.
+/// Whether a person perceives something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -67,7 +67,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Judges a change of friction by its size in Weber steps.
+    /// Judges a change of friction from its size in Weber steps.
     pub fn of_step(weber_steps: f64) -> Self {
         match weber_steps.abs() {
             steps if steps < 1.0 => Self::NotFelt,
@@ -92,12 +92,12 @@ impl Verdict {
         }
     }
 
-    /// The verdict on what is felt in several ways: the surest of them, of which *not felt* is the last.
+    /// The most certain of several verdicts; *not felt* is the least certain.
     pub fn of_any(verdicts: impl IntoIterator<Item = Self>) -> Self {
         verdicts.into_iter().max_by_key(|verdict| verdict.sureness()).unwrap_or(Self::NotFelt)
     }
 
-    /// The larger, the surer it is that something is felt: from *not felt* over *unknown* and *maybe* to *felt*.
+    /// Rank of certainty: *not felt*, *unknown*, *maybe*, *felt*.
     pub(crate) fn sureness(self) -> u8 {
         match self {
             Self::NotFelt => 0,
@@ -118,7 +118,7 @@ impl Verdict {
     }
 }
 
-/// The change from one total friction to another, in Weber steps: `ln(to / from) / ln 1.11`. Negative where friction
+/// The change from one total friction to another, in Weber steps: `ln(to / from) / ln 1.11`. Negative if friction
 /// falls.
 ///
 /// ```
@@ -130,22 +130,22 @@ pub fn weber_steps(from_n: f64, to_n: f64) -> f64 {
     libm::log(to_n / from_n) / libm::log1p(WEBER_FRACTION)
 }
 
-/// A number of Weber steps with one digit after the point, or with as many more as its verdict needs: 2.3 is felt, and
-/// 2.28 is near the threshold.
+/// Formats Weber steps with one decimal place, or with as many more as its verdict needs: 2.3 is felt, and 2.28 is near
+/// the threshold.
 pub fn weber_steps_text(weber_steps: f64) -> String {
     let rounded = |digits: i32| (weber_steps * 10f64.powi(digits)).round() / 10f64.powi(digits);
     let is_faithful = |digits: &i32| Verdict::of_step(rounded(*digits)) == Verdict::of_step(weber_steps);
     let digits = (1..=3).find(is_faithful).unwrap_or(3);
-    // Adding zero makes no negative zero.
+    // Adding zero avoids a negative zero.
     format!("{:.*}", digits as usize, 0.0 + rounded(digits))
 }
 
-/// Number of Weber steps that everyone in the studies feels, about 2.3.
+/// Number of Weber steps felt by everyone in the studies, about 2.3.
 pub fn weber_steps_safe() -> f64 {
     weber_steps(1.0, 1.0 + WEBER_FRACTION_SAFE)
 }
 
-/// The smallest amplitude of a sinusoidal tangential force that is felt, N; `None` where there is no measurement.
+/// The smallest perceptible amplitude of a sinusoidal tangential force, N; `None` without a measurement.
 ///
 /// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
 /// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
@@ -161,7 +161,7 @@ pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
     Some(displacement_m * libm::hypot(TANGENTIAL_STIFFNESS_N_PER_M, damping_n_per_m))
 }
 
-/// The threshold as it may be at the least, as it is known, and as it may be at the most, N.
+/// Lower bound, nominal value and upper bound of the threshold, N.
 pub(crate) fn texture_range_n(frequency_hz: f64) -> Option<[f64; 3]> {
     let threshold_n = texture_threshold_n(frequency_hz)?;
     Some([threshold_n / THRESHOLD_UNCERTAINTY, threshold_n, threshold_n * THRESHOLD_UNCERTAINTY])
@@ -177,7 +177,7 @@ pub(crate) fn natural_noise_amplitude_n(frequency_hz: f64) -> f64 {
     NATURAL_NOISE_RMS_N * (2.0 / thirds_of_octave).sqrt()
 }
 
-/// The part of a texture's amplitude that is left behind the lag of friction, from 0 to 1.
+/// Fraction of a texture's amplitude that remains after the lag of friction, from 0 to 1.
 pub(super) fn lag_gain(wavelength_mm: f64) -> f64 {
     1.0 / libm::hypot(1.0, std::f64::consts::TAU * 1e3 * RELAXATION_LENGTH_M / wavelength_mm)
 }
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(Verdict::of_texture(0.3 * threshold_n, 40.0), Verdict::NotFelt);
         assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::NearThreshold);
         assert_eq!(Verdict::of_texture(4.0 * threshold_n, 40.0), Verdict::Felt);
-        // At 250 Hz the threshold is far below the noise of the finger itself.
+        // At 250 Hz the threshold is far below the finger's own noise.
         assert_eq!(Verdict::of_texture(4.0 * texture_threshold_n(250.0).unwrap(), 250.0), Verdict::Unknown);
         assert_eq!(Verdict::of_texture(1.0, 900.0), Verdict::Unknown);
     }

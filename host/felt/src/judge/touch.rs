@@ -1,4 +1,4 @@
-//! Stretches of a run on which the finger was on an element, and what was felt on them.
+//! Parts of a run on which the finger was on an element, and their perception.
 
 use std::ops::Range;
 
@@ -6,21 +6,21 @@ use super::measure::{FINGERTIP_M, SceneContrast, WAY_MAX_M};
 use super::moment::{MOMENT_HZ, Moment, ways_m};
 use super::{Step, Texture};
 
-/// What was felt on a stretch of a run.
+/// Perception on a part of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) contrast: Step,
     pub(super) is_narrow: bool,
     pub(super) texture: Option<Texture>,
-    /// The largest contrast of the scene on a way: least and largest friction of its own, electric, N.
+    /// The largest contrast of the scene on a way: smallest and largest electric friction of its own, N.
     pub(super) widest_n: [f64; 2],
-    /// The part of it that was felt.
+    /// The felt fraction of it.
     pub(super) slope: f64,
     pub(super) scene: SceneContrast,
 }
 
 impl Touch {
-    /// The surest of both; the contrast over the direction is one between touches.
+    /// Combines two touches by the more certain perception. The contrast over the direction is between touches.
     pub(super) fn united(self, other: Self) -> Self {
         let surer = |one: Step, other: Step| if other.cmp_felt(&one).is_gt() { other } else { one };
         let contrast = surer(self.contrast, other.contrast);
@@ -57,20 +57,20 @@ impl Sums {
         self.natural_n += moment.natural_n;
     }
 
-    /// The step between two electric frictions, of whose distance from `mean_n` a part is felt.
+    /// The step between two electric frictions, whose distances from `mean_n` are felt by the fraction `part`.
     pub(super) fn felt_step(&self, [from_n, to_n]: [f64; 2], mean_n: f64, part: f64) -> Step {
         let [felt_n, natural_n] = [self.felt_n, self.natural_n].map(|sum| sum / self.count);
         let total_n = |electric_n: f64| natural_n + (felt_n + part * (electric_n - mean_n)).max(0.0);
         Step::new(total_n(from_n), total_n(to_n))
     }
 
-    /// The step between two electric frictions of the scene, of which a part is felt.
+    /// The felt fraction of the step between two electric frictions of the scene.
     pub(super) fn felt_part(&self, sides_n: [f64; 2], part: f64) -> Step {
         self.felt_step(sides_n, self.scene_n / self.count, part)
     }
 }
 
-/// The stretches of a run of which all moments are wanted.
+/// The longest ranges of a run whose moments all satisfy `is_wanted`.
 pub(super) fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = None;
@@ -88,14 +88,14 @@ pub(super) fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> 
     found
 }
 
-/// The moments of a stretch that are farther from both of its ends than a fingertip's resolution.
+/// The moments of a range farther from both ends than a fingertip's resolution.
 pub(super) fn inner(stretch: &[Moment]) -> &[Moment] {
     let from = near_count(stretch.iter(), FINGERTIP_M);
     let to = stretch.len() - near_count(stretch.iter().rev(), FINGERTIP_M);
     stretch.get(from..to).unwrap_or_default()
 }
 
-/// How many moments of a way are nearer to its beginning than a distance.
+/// Number of moments of a way closer to its start than a distance.
 fn near_count<'m>(way: impl Iterator<Item = &'m Moment>, distance_m: f64) -> usize {
     ways_m(way).take_while(|way_m| *way_m < distance_m).count()
 }

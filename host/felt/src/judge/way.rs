@@ -1,4 +1,4 @@
-//! Where a finger is sent to feel an element.
+//! Paths of a finger across an element.
 
 use std::f64::consts::TAU;
 
@@ -10,17 +10,17 @@ use super::visible_layers;
 
 /// Rows and columns over the bounding rectangle of a layer, the middle one first.
 const ROWS: [f64; 5] = [0.5, 0.3, 0.7, 0.1, 0.9];
-/// Places of a way at which the layers are determined.
+/// Number of places on a way at which the layers are determined.
 const PLACES: usize = 400;
 /// Length of a stroke beyond both ends of an element, m.
 const BEYOND_M: f64 = 0.01;
-/// Longest way of a stroke, m: of a longer element, the part on which friction changes most.
+/// Longest way of a stroke, m: for a longer element, the part with the largest changes of friction.
 const LENGTH_MAX_M: f64 = 0.12;
-/// From one place at which friction is compared to the next, m.
+/// Spacing of the places at which friction is compared, m.
 const STEP_M: f64 = 2.5e-4;
-/// The part of a way that is left out at both ends: a border of the screen may be that of a region, too.
+/// Fraction of a way omitted at both ends, where a border of the screen may be that of a region.
 const END_PART: f64 = 1e-4;
-/// A way is taken in place of an earlier one if friction changes on it by so many times as much.
+/// Factor by which friction must change more on a way to prefer it to an earlier one.
 const BETTER: f64 = 1.05;
 
 /// A straight way, m.
@@ -31,9 +31,9 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// The way across a layer on which friction changes most, and 10 mm beyond both ends, within the screen; `None` for
-    /// a layer that is visible nowhere. What changes `below` does not count. A layer that depends on the direction is
-    /// crossed along its axis.
+    /// The way across a layer with the largest changes of friction, and 10 mm beyond both ends, within the screen;
+    /// `None` for a layer that is visible nowhere. Changes of `below` do not count. A layer that depends on the
+    /// direction is crossed along its axis.
     pub(super) fn across(
         layer: usize,
         axis_turns: Option<f64>,
@@ -51,7 +51,7 @@ impl Way {
         parts.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best }).map(|(way, _)| way)
     }
 
-    /// A stroke along the way at a constant speed, and back again if `there_and_back`.
+    /// A stroke along the way at constant speed, and back if `there_and_back`.
     pub(super) fn stroke(&self, speed_m_per_s: f64, there_and_back: bool) -> Option<Stroke> {
         let point = |(x_m, y_m): (f64, f64)| Point { x_m, y_m };
         let (from, to) = (point(self.from_m), point(self.to_m));
@@ -79,7 +79,7 @@ impl Way {
     fn along(axis_turns: f64, [left_m, top_m, right_m, bottom_m]: [f64; 4]) -> Self {
         let (middle_x_m, middle_y_m) = (0.5 * (left_m + right_m), 0.5 * (top_m + bottom_m));
         let (axis_y, axis_x) = libm::sincos(TAU * axis_turns);
-        // An axis along one side never meets the ends of the other: infinite.
+        // An axis parallel to one side never meets the ends of the other: infinite.
         let half_m = (0.5 * (right_m - left_m) / axis_x.abs()).min(0.5 * (bottom_m - top_m) / axis_y.abs());
         let at = |part: f64| (middle_x_m + part * half_m * axis_x, middle_y_m + part * half_m * axis_y);
         Self { from_m: at(-1.0), to_m: at(1.0) }
@@ -93,7 +93,7 @@ impl Way {
         direction_of([self.to_m.0 - self.from_m.0, self.to_m.1 - self.from_m.1])
     }
 
-    /// The place after a part of the way, from 0 to 1.
+    /// The place at a fraction of the way, from 0 to 1.
     fn at(&self, part: f64) -> (f64, f64) {
         let ((from_x_m, from_y_m), (to_x_m, to_y_m)) = (self.from_m, self.to_m);
         (from_x_m + part * (to_x_m - from_x_m), from_y_m + part * (to_y_m - from_y_m))
@@ -103,7 +103,7 @@ impl Way {
         Self { from_m: self.at(from), to_m: self.at(to) }
     }
 
-    /// The longest stretch on which the layer is visible; `None` for none.
+    /// The longest part on which the layer is visible; `None` if there is none.
     fn longest_visible(self, layer: usize, reference: &Reference) -> Option<Self> {
         let part = |number: usize| number as f64 / PLACES as f64;
         let (mut longest, mut run) = (0..0, 0..0);
@@ -121,7 +121,7 @@ impl Way {
         (!longest.is_empty() && self.length_m() > 0.0).then(|| self.part(part(longest.start), part(longest.end)))
     }
 
-    /// The way from before its beginning to behind its end, within the screen.
+    /// The way extended beyond both ends, within the screen.
     fn extended(self, (width_m, height_m): (f64, f64)) -> Self {
         let [x, y] = self.direction();
         let beyond = |(x_m, y_m): (f64, f64), [x, y]: [f64; 2]| {
@@ -136,7 +136,8 @@ impl Way {
         Self { from_m: beyond(self.from_m, [-x, -y]), to_m: beyond(self.to_m, [x, y]) }
     }
 
-    /// The first part of at most [`LENGTH_MAX_M`] on which friction changes most, there or back, and its change, N.
+    /// The first part of at most [`LENGTH_MAX_M`] with the largest changes of friction in either direction, and its
+    /// change, N.
     fn liveliest_part(self, [reference, below]: [&Reference; 2]) -> (Self, f64) {
         let length_m = self.length_m();
         let count = (length_m / STEP_M) as usize + 1;

@@ -13,7 +13,7 @@ pub(super) struct Inversion {
     waveform: Waveform,
     codes_per_v_rms: f64,
     electric_friction_max_n: f64,
-    /// The last amplitude, as a DAC code, and its friction, N: it is the same for many ticks.
+    /// The last amplitude, as a DAC code, and its friction, N, cached since many ticks share it.
     last: (f64, f64),
 }
 
@@ -32,7 +32,7 @@ impl Inversion {
         })
     }
 
-    /// Electric friction at a commanded voltage, the DAC's step included, N.
+    /// Electric friction at a commanded voltage, including DAC steps, N.
     ///
     /// The code of a square wave is its amplitude. The code of a sine wave is only one of many samples, so its
     /// amplitude is rounded as the DAC would round it.
@@ -47,7 +47,7 @@ impl Inversion {
         self.last.1
     }
 
-    /// Whether the drive can add so much friction.
+    /// Whether the drive can add this friction.
     pub(super) fn reaches(&self, electric_friction_n: f64) -> bool {
         (0.0..=self.electric_friction_max_n).contains(&electric_friction_n)
     }

@@ -6,14 +6,14 @@ use super::rows::{Frictions, RowMaker};
 use super::{FeltRow, Observation};
 use crate::fidelity::{FidelitySample, SAMPLE_HZ, ticks_per_sample};
 
-/// The longest stretch of a play that is judged, s: its samples take 17 MB.
+/// Longest judged part of a play, s: its samples take 17 MB.
 pub const JUDGED_MAX_S: f64 = 60.0;
 
-/// The samples of a play, [`SAMPLE_HZ`] a second, up to [`JUDGED_MAX_S`].
+/// The samples of a play at [`SAMPLE_HZ`], up to [`JUDGED_MAX_S`].
 #[derive(Debug)]
 pub(super) struct JudgedSamples {
     row_maker: RowMaker,
-    /// The flags that the board reported last, which may be less often.
+    /// The last reported flags, which may be older than the sample.
     flags: Option<Flags>,
     samples: Vec<FidelitySample>,
 }
@@ -23,7 +23,7 @@ impl JudgedSamples {
         Self { row_maker: RowMaker::new(tick_hz, ticks_per_sample(tick_hz)), flags: None, samples: Vec::new() }
     }
 
-    /// Adds an observation `ticks` ticks after time zero, which is `start_s` after the power-on of the board.
+    /// Adds an observation `ticks` ticks after time zero, which is `start_s` after the board's power-on.
     pub(super) fn add(&mut self, observation: &Observation, ticks: u64, frictions: &Frictions, start_s: f64) {
         if self.samples.len() as f64 >= JUDGED_MAX_S * SAMPLE_HZ {
             return;

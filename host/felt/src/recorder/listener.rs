@@ -1,12 +1,12 @@
-//! What a recorder is told of a play, by calls.
+//! Callbacks of a play for a recorder.
 
 use frixel_model::ParameterError;
 use frixel_scene::{LayerSetting, Program};
 use frixel_wire::hello::BoardLimits;
 
-/// Is told what a board is made to play, to compare with what is felt.
+/// Receives the changes of what a board plays, to compare with felt friction.
 pub trait PlayListener {
-    /// The board plays another program from now on.
+    /// The board switches to another program.
     ///
     /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
     fn scene_replaced(&mut self, program: &Program, limits: &BoardLimits) -> Result<(), ParameterError> {
@@ -14,22 +14,22 @@ pub trait PlayListener {
         Ok(())
     }
 
-    /// The layer with this record number, from zero, has this setting from now on.
+    /// The layer of a record, by its index from zero, gets this setting.
     fn layer_changed(&mut self, record: u8, setting: LayerSetting) {
         let _ = (record, setting);
     }
 
-    /// The layer with this record number, from zero, is triggered: it is switched on, and off again by itself.
+    /// The layer of a record, by its index from zero, is triggered: switched on, and later off by itself.
     fn triggered(&mut self, record: u8) {
         let _ = record;
     }
 
-    /// The host asks the board to play a stream of so many samples a second.
+    /// The host asks the board to play a stream of `sample_hz` samples per second.
     fn stream_started(&mut self, sample_hz: u32) {
         let _ = sample_hz;
     }
 
-    /// The host sends samples of the stream, which follow the earlier ones.
+    /// The host sends further samples of the stream.
     fn samples_sent(&mut self, samples: &[u16]) {
         let _ = samples;
     }
@@ -40,7 +40,7 @@ pub trait PlayListener {
     /// The host switches the output off.
     fn stopped(&mut self) {}
 
-    /// Ticks that remain to be recorded.
+    /// Number of ticks that remain to be recorded.
     fn ticks_left(&self) -> u64 {
         u64::MAX
     }

@@ -1,38 +1,38 @@
-//! What happened during a play, and when.
+//! Events during a play, with their times.
 
 use frixel_scene::{LayerSetting, Program};
 use serde::{Deserialize, Serialize};
 
-/// An event of a play on the clock of its rows.
+/// An event of a play, on the clock of its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Marker {
     /// Ticks since time zero of the record.
     pub ticks: u64,
     /// The same time, s.
     pub t_s: f64,
-    /// What happened.
+    /// The event.
     #[serde(flatten)]
     pub event: MarkedEvent,
 }
 
-/// What happened at a [`Marker`].
+/// An event at a [`Marker`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum MarkedEvent {
-    /// The scene began to play, or the first report of a board that plays it came: time zero.
+    /// The scene began to play, or a playing board sent its first report: time zero.
     SceneBegan,
-    /// Another scene plays from now on.
+    /// Another scene plays from here on.
     SceneReplaced,
-    /// A layer has this setting from now on.
+    /// A layer gets a new setting.
     LayerChanged {
         /// The layer's title, as in messages.
         layer: String,
         /// Whether the layer is on.
         on: bool,
-        /// The factor of its friction.
+        /// The gain of the layer.
         gain: f32,
     },
-    /// A layer was triggered. What switches it on and off are changes of their own.
+    /// A layer was triggered. Switching it on and off are separate events.
     Triggered {
         /// The layer's title, as in messages.
         layer: String,
@@ -48,7 +48,7 @@ pub enum MarkedEvent {
     Stopped,
 }
 
-/// The markers of a record, and the names that its layers have.
+/// The markers of a record, and the titles of its layers.
 #[derive(Debug, Default)]
 pub(super) struct Markers {
     markers: Vec<Marker>,
@@ -56,7 +56,7 @@ pub(super) struct Markers {
 }
 
 impl Markers {
-    /// The layers have the names of this program from now on.
+    /// Takes the titles of the layers from this program.
     pub(super) fn name_layers(&mut self, program: &Program) {
         self.titles = program.titles.iter().map(ToString::to_string).collect();
     }

@@ -1,9 +1,8 @@
-//! Records what a board did and what its finger felt, and compares it with the [reference](mod@frixel_scene::reference).
+//! Records a board and its finger, and compares them with the [reference](mod@frixel_scene::reference).
 //!
-//! The same [`Recorder`] serves simulated boards and boards at a port. Its input is [`Observation`]s: one for every
-//! tick if the board or its world is simulated, one for every telemetry message of a board at a port. Its output is
-//! [`FeltRow`]s and a [`MetricsSummary`]. A value that the source cannot observe is `None` in an observation, and an
-//! absent cell or number in the output.
+//! The same [`Recorder`] serves simulated boards and boards at a port. Its input is [`Observation`]s: one per tick for
+//! a simulated board or world, one per telemetry message for a board at a port. Its output is [`FeltRow`]s and a
+//! [`MetricsSummary`]. A value that the source cannot observe is `None` in an observation, and absent from the output.
 
 mod inversion;
 mod judged;
@@ -41,14 +40,14 @@ use turning::Turning;
 #[derive(Debug)]
 pub struct Recorder {
     comparison: Option<Comparison>,
-    /// The simulated finger that the reference goes through, see [`Self::through_finger`].
+    /// The simulated finger that filters the reference, see [`Self::through_finger`].
     finger: Option<ReferenceFriction>,
     row_maker: RowMaker,
     rows: Vec<FeltRow>,
-    /// For the judge; `None` if they are not kept, or once something changed the scene.
+    /// Samples for the judge; `None` if they are not kept, or after a change of the scene.
     judged: Option<JudgedSamples>,
     markers: Markers,
-    /// The samples that were sent since they were last taken; `None` if they are not kept.
+    /// The samples sent since they were last taken; `None` if they are not kept.
     sent_samples: Option<Vec<u16>>,
     tick_hz: u32,
     tick_period_s: f64,
@@ -57,7 +56,7 @@ pub struct Recorder {
     last_tick: u64,
 }
 
-/// The reference that a play is compared with, and the metrics of the comparison.
+/// The reference of a play, and the metrics of the comparison.
 #[derive(Debug)]
 struct Comparison {
     reference: StrokeReference,
@@ -68,8 +67,8 @@ struct Comparison {
 }
 
 impl Recorder {
-    /// Creates a recorder that compares with the reference of `program`, on a board with these limits and `tick_hz`
-    /// ticks a second. It records at most `ticks_max` ticks, with a row for every `ticks_per_row` of them.
+    /// Creates a recorder that compares with the reference of `program`, on a board with these limits and the tick rate
+    /// `tick_hz`. It records at most `ticks_max` ticks, with a row for every `ticks_per_row` of them.
     ///
     /// Returns an error if the contact model refuses the program's finger. This does not happen for a compiled program.
     pub fn new(
@@ -103,8 +102,8 @@ impl Recorder {
         }
     }
 
-    /// Compares with what the simulated finger would have felt of a display without fault, with its load, noise and
-    /// skin; without this, with the friction of the scene's finger in steady sliding.
+    /// Compares with an ideal display under the simulated finger, with its load, noise and skin. Without this, compares
+    /// with the scene's finger in steady sliding.
     #[must_use]
     pub fn through_finger(self) -> Self {
         Self { finger: Some(ReferenceFriction::default()), ..self }
@@ -116,20 +115,20 @@ impl Recorder {
         Self { sent_samples: Some(Vec::new()), ..self }
     }
 
-    /// Keeps what [`in_play`](crate::judge::in_play) judges, for [`Self::take_judged`].
+    /// Keeps the samples for [`in_play`](crate::judge::in_play), to be taken by [`Self::take_judged`].
     #[must_use]
     pub fn judged(self) -> Self {
         Self { judged: Some(JudgedSamples::new(self.tick_hz)), ..self }
     }
 
-    /// Makes `tick` time zero: the record begins with the tick after it, and earlier observations are ignored.
+    /// Sets time zero to `tick`: the record begins with the next tick, and earlier observations are ignored.
     pub fn start(&mut self, tick: u32) {
         self.start_tick = Some(u64::from(tick));
         self.last_tick = u64::from(tick);
         self.mark(MarkedEvent::SceneBegan);
     }
 
-    /// Adds a marker at the last observation. Nothing is marked before time zero.
+    /// Adds a marker at the last observation. Ignored before time zero.
     fn mark(&mut self, event: MarkedEvent) {
         if self.start_tick.is_some() {
             self.markers.add(self.ticks(), self.t_s(), event);
@@ -142,7 +141,7 @@ impl Recorder {
         }
     }
 
-    /// Adds an observation. Ignores one that is not later than the one before, or that is beyond the end of the record.
+    /// Adds an observation. Ignores one that is not later than the previous one, or beyond the end of the record.
     pub fn record(&mut self, observation: &Observation) {
         let Some(ticks_passed) = self.advance_to(observation.tick) else { return };
         let t_s = self.last_tick as f64 * self.tick_period_s;
@@ -172,7 +171,7 @@ impl Recorder {
         Some(self.start_tick? as f64 * self.tick_period_s)
     }
 
-    /// Ticks that remain to be recorded.
+    /// Number of ticks that remain to be recorded.
     pub fn ticks_left(&self) -> u64 {
         self.ticks_max - self.ticks()
     }
@@ -187,18 +186,18 @@ impl Recorder {
         std::mem::take(&mut self.rows)
     }
 
-    /// Removes the samples of streams that were sent so far and returns them; none without [`Self::keeping_samples`].
+    /// Removes the stream samples sent so far and returns them; empty without [`Self::keeping_samples`].
     pub fn take_samples(&mut self) -> Vec<u16> {
         self.sent_samples.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// Removes the samples of the play up to [`JUDGED_MAX_S`] and returns them; `None` without [`Self::judged`], or if
-    /// something changed the scene while it played: a layer, a trigger, a stream or another scene.
+    /// a layer, a trigger, a stream or another scene changed the play.
     pub fn take_judged(&mut self) -> Option<Vec<FidelitySample>> {
         self.judged.take().map(JudgedSamples::into_samples)
     }
 
-    /// What has happened so far, in its order. A marker has the time of the last observation before it.
+    /// The events so far, in order. A marker has the time of the preceding observation.
     pub fn markers(&self) -> &[Marker] {
         self.markers.as_slice()
     }
@@ -213,7 +212,7 @@ impl Recorder {
     }
 
     /// Advances to a tick of the board's counter, which is modulo 2^32, and returns the ticks since the previous
-    /// observation; `None` if the tick is not to be recorded.
+    /// observation; `None` if the tick is not recorded.
     fn advance_to(&mut self, tick: u32) -> Option<u32> {
         if self.start_tick.is_none() && self.ticks_max > 0 {
             self.start(tick);
@@ -229,7 +228,7 @@ impl Recorder {
     }
 }
 
-/// A placeholder that records nothing, for use until a play has its recorder.
+/// A placeholder that records nothing, until a play has its recorder.
 impl Default for Recorder {
     fn default() -> Self {
         Self { ticks_max: 0, ..Self::without_reference(1, u32::MAX) }
@@ -272,7 +271,7 @@ impl PlayListener for Recorder {
         self.mark(MarkedEvent::Triggered { layer });
     }
 
-    /// The reference has the stream once the board reports that it plays.
+    /// The reference includes the stream once the board reports that it plays.
     fn stream_started(&mut self, sample_hz: u32) {
         self.judged = None;
         self.with_stream(|stream| stream.start(sample_hz));
@@ -311,7 +310,7 @@ impl Comparison {
         finger: Option<&mut ReferenceFriction>,
     ) -> Frictions {
         let scenes_natural_n = self.reference.natural_friction_n();
-        // Only a simulated finger with a skin of its own turns.
+        // Only a simulated finger with its own skin turns.
         let turning = self.turning.follow(observation.finger) && finger.is_some();
         let electric_n = self.reference_electric_n(observation, t_s, ticks_passed);
         let in_scene_n = electric_n.map(|electric_n| scenes_natural_n + electric_n);

@@ -9,19 +9,19 @@ use frixel_wire::message::Telemetry;
 pub struct Observation {
     /// Ticks since the board's power-on, this one included, modulo 2^32.
     pub tick: u32,
-    /// The finger, while it is on the screen: its true place if the finger is simulated, otherwise the place that the
-    /// board reports.
+    /// The finger while it is on the screen: its true place if it is simulated, otherwise the place reported by the
+    /// board.
     pub finger: Option<FingerState>,
-    /// What a simulated finger felt.
+    /// Friction felt by a simulated finger.
     pub felt: Option<Felt>,
-    /// The code that went to the DAC.
+    /// The code sent to the DAC.
     pub dac_code: Option<i16>,
     /// The board's telemetry of this tick.
     pub telemetry: Option<Telemetry>,
 }
 
 impl Observation {
-    /// An observation of a simulated board and its world, of which everything is known.
+    /// An observation of a simulated board and its world, with all values known.
     pub fn of_tick(tick: u32, felt: &Felt, telemetry: &Telemetry) -> Self {
         Self { telemetry: Some(*telemetry), ..Self::of_world(tick, felt, telemetry.dac_code) }
     }
@@ -47,7 +47,7 @@ impl Observation {
         }
     }
 
-    /// Whether the board knows of a finger; `None` if it did not report.
+    /// Whether the board has received a report of a finger; `None` if it did not report.
     pub(super) fn board_has_finger(&self) -> Option<bool> {
         self.telemetry.map(|telemetry| !telemetry.flags.contains(Flags::NO_FINGER))
     }

@@ -1,4 +1,4 @@
-//! The output of a recorder: one row for a fixed number of ticks.
+//! The output of a recorder: one row per fixed number of ticks.
 
 use std::fmt::{self, Display};
 
@@ -6,8 +6,7 @@ use frixel_wire::fault::Flags;
 
 use super::Observation;
 
-/// A row of `felt.csv`. An unknown value is `None`, an empty cell. Frictions are totals, and means over the row's
-/// ticks.
+/// A row of `felt.csv`. An unknown value is `None`, an empty cell. Frictions are totals, averaged over the row's ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeltRow {
     /// Time since the scene began to play, at the end of the row, s.
@@ -24,22 +23,22 @@ pub struct FeltRow {
     pub commanded_n: Option<f64>,
     /// Friction that the finger felt, N.
     pub felt_n: Option<f64>,
-    /// The part of the felt friction that a simulated finger has without the drive, N.
+    /// Natural part of the felt friction, without the drive, of a simulated finger, N.
     pub natural_n: Option<f64>,
     /// Rms voltage on the electrode over the row, V; known only in a simulated world.
     pub electrode_v_rms: Option<f64>,
-    /// Rms voltage of the envelope, V: the last that the board reported in the row.
+    /// Rms voltage of the envelope, V, as last reported in the row.
     pub voltage_v_rms: Option<f64>,
-    /// The last code in the row that went to the DAC.
+    /// The last code in the row sent to the DAC.
     pub dac_code: Option<i16>,
-    /// Every flag that the board reported in the row.
+    /// All flags reported by the board in the row.
     pub flags: Option<Flags>,
-    /// Whether the board has had a report of the touch, at the end of the row.
+    /// Whether the board has received a report of the touch by the end of the row.
     pub is_tracked: bool,
 }
 
-/// Displays flags as a recording has them: names joined by `+`, or `none`. Flags without a name, which newer firmware may
-/// set, are a hexadecimal number.
+/// Displays flags as in a recording: names joined by `+`, or `none`. Flags without a name, which newer firmware may
+/// set, are displayed as a hexadecimal number.
 ///
 /// ```
 /// use frixel_felt::recorder::FlagNames;
@@ -75,7 +74,7 @@ pub(super) struct Frictions {
 }
 
 impl Frictions {
-    /// The frictions that are known without a program. Natural friction is then that of the simulated finger.
+    /// The frictions known without a program; natural friction is then the simulated finger's.
     pub(super) fn without_reference(observation: &Observation) -> Self {
         let natural_n = observation.felt.map(|felt| felt.friction_n - felt.electric_friction_n);
         let electric_n = observation.telemetry.map(|telemetry| f64::from(telemetry.commanded_electric_friction_n));
@@ -89,8 +88,8 @@ impl Frictions {
 
 /// Makes a row for every fixed number of ticks.
 ///
-/// With one row a millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, so it does not
-/// depend on the carrier's phase at the end of the row.
+/// With one row per millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, and thus
+/// independent of the carrier's phase at the end of the row.
 #[derive(Debug)]
 pub(super) struct RowMaker {
     tick_period_s: f64,
@@ -103,7 +102,7 @@ pub(super) struct RowMaker {
     felt: Mean,
     natural: Mean,
     electrode_v2: Mean,
-    /// The board has had a report of this touch.
+    /// Whether the board has received a report of this touch.
     is_tracked: bool,
 }
 

@@ -1,30 +1,30 @@
-//! Computes how a finger should feel a stream of samples, independently of the firmware that plays the stream.
+//! The reference of a stream of samples, independent of the firmware that plays it.
 
 use std::collections::VecDeque;
 
 /// Time in which a stream fades in and out, s (`PROTOCOL.md`, section 14).
 const FADE_S: f64 = 0.01;
-/// How long a board may have had samples without reporting that it waits for more, s. After this time the recorder
-/// assumes that a report was lost between two telemetry messages, and that the stream plays.
+/// Time for which a board may have had samples without reporting underrun or play, s. Afterwards the recorder assumes
+/// that a report was lost between two telemetry messages, and that the stream plays.
 const START_MISSED_AFTER_S: f64 = 0.05;
 
-/// A stream under way. The board decides when it plays and when it waits for samples, and reports this by a flag. While
-/// it plays, its value is interpolated linearly between the host's samples.
+/// A stream in progress. A flag of the board reports whether it plays or waits for samples. While it plays, its value
+/// is interpolated linearly between the host's samples.
 #[derive(Debug)]
 pub(super) struct Stream {
     tick_hz: f64,
-    /// Samples from the one that plays now; `first_index` is the index of the first.
+    /// Samples from the current one on; `first_index` is the index of the first.
     samples: VecDeque<u16>,
     first_index: u64,
     samples_per_tick: f64,
     phase: Phase,
-    /// Index of the sample that plays now, plus the fraction of the interval to the next one.
+    /// Index of the current sample, plus the fraction of the interval to the next one.
     place: f64,
-    /// The host has sent the end of the stream.
+    /// Whether the host has ended the stream.
     ended: bool,
     /// Weight of the stream's layers, from 0 to 1.
     weight: f64,
-    /// The board last reported that it waits for samples.
+    /// Whether the board last reported that it waits for samples.
     dry: bool,
     /// Ticks since the board may have begun to play.
     ticks_with_samples: u32,
@@ -34,7 +34,7 @@ pub(super) struct Stream {
 enum Phase {
     /// There is no stream, or it is over.
     Over,
-    /// The host has started the stream, and the board has not reported that it waits for samples.
+    /// The host has started the stream, but the board has not reported yet that it waits for samples.
     Requested,
     /// The board waits for samples.
     Waiting,
@@ -59,7 +59,7 @@ impl Stream {
         }
     }
 
-    /// Starts a stream of so many samples a second.
+    /// Starts a stream of `sample_hz` samples per second.
     pub(super) fn start(&mut self, sample_hz: u32) {
         self.samples.clear();
         self.samples_per_tick = f64::from(sample_hz) / self.tick_hz;
@@ -77,14 +77,13 @@ impl Stream {
         self.ended = true;
     }
 
-    /// Ends the stream at once, as the output is off.
+    /// Ends the stream at once, because the output is off.
     pub(super) fn stop(&mut self) {
         (self.phase, self.weight) = (Phase::Over, 0.0);
     }
 
-    /// Advances by `ticks` ticks. `dry` is the board's report after the last of them, whether it waits for samples;
-    /// `None` if there was no report. Returns the sample, from 0 to 1, and the weight of the stream's layers, from 0 to
-    /// 1.
+    /// Advances by `ticks` ticks. `dry` is the board's report after the last tick that it waits for samples; `None`
+    /// without a report. Returns the sample, from 0 to 1, and the weight of the stream's layers, from 0 to 1.
     ///
     /// A change between two reports is placed halfway between them.
     pub(super) fn advance(&mut self, ticks: u32, dry: Option<bool>) -> (f64, f64) {
@@ -118,15 +117,15 @@ impl Stream {
         self.weight = if plays { (self.weight + step).min(1.0) } else { (self.weight - step).max(0.0) };
     }
 
-    /// Handles a tick before the board has reported that it waits for samples: the request may still be in transit.
+    /// Handles a tick before the board has reported that it waits for samples; the request may still be in transit.
     fn wait_for_report(&mut self) -> Phase {
         self.ticks_with_samples += u32::from(!self.samples.is_empty());
         let missed = f64::from(self.ticks_with_samples) > START_MISSED_AFTER_S * self.tick_hz;
         if missed { self.begin() } else { Phase::Requested }
     }
 
-    /// Begins to play. If the stream still fades out, the board continues from the sample that it held; otherwise it
-    /// begins with the sample that it waited for.
+    /// Begins to play. A stream that still fades out continues from the held sample; otherwise it begins with the
+    /// sample that it waited for.
     fn begin(&mut self) -> Phase {
         if self.weight > 0.0 {
             return Phase::Playing;

@@ -1,15 +1,15 @@
-//! Which way a finger slides, and where it lands or turns.
+//! Sliding direction of a finger, and its landings and turns.
 
 use frixel_hil_sim::{FingerState, RELAXATION_LENGTH_M, one_minus_exp};
 
-/// The part of its full pull against the motion from which the skin counts as turned.
+/// Fraction of its full pull against the motion from which on the skin counts as turned.
 const TURNED: f64 = 0.95;
 
-/// The direction in which the skin pulls. It follows the direction of the motion over the relaxation length, so that
-/// friction against the motion is smaller, or negative, after a finger has landed or turned.
+/// Direction of the skin's pull. It follows the direction of motion over the relaxation length, so that friction
+/// against the motion is smaller, or negative, after a finger lands or turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turning {
-    /// A vector of length 1 in steady sliding.
+    /// A unit vector in steady sliding.
     pull: [f64; 2],
     place_m: Option<[f64; 2]>,
     /// Direction of the last step; zeros before the first one.
@@ -29,7 +29,7 @@ impl Turning {
         if step_m <= 0.0 {
             return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
         }
-        // As `direction_of` in `frixel_scene::reference`, whose length is known here.
+        // Same as `direction_of` in `frixel_scene::reference`, with a known length.
         self.direction = step.map(|part_m| part_m / step_m);
         let share = one_minus_exp(step_m / RELAXATION_LENGTH_M);
         for (pull, direction) in self.pull.iter_mut().zip(self.direction) {
@@ -39,7 +39,7 @@ impl Turning {
         along < TURNED
     }
 
-    /// Direction of the last motion, a vector of length 1; zeros for a finger that has not moved since it landed.
+    /// Direction of the last motion, a unit vector; zeros for a finger that has not moved since it landed.
     pub(super) fn direction(&self) -> [f64; 2] {
         self.direction
     }
