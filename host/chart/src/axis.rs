@@ -37,14 +37,14 @@ impl Axis {
         Self { labels, ..self }
     }
 
-    /// Position of a value as a part of the axis, from 0 to 1; `None` if its logarithm is undefined.
+    /// Position of a value as a fraction of the axis, from 0 to 1; `None` if its logarithm is undefined.
     pub(super) fn part(&self, value: f64) -> Option<f64> {
         let place = if self.logarithmic { value.log10() } else { value };
         let Range { start, end } = self.range;
         place.is_finite().then_some((place - start) / (end - start))
     }
 
-    /// The values that have a label.
+    /// Values with a label.
     pub fn ticks(&self) -> Vec<f64> {
         let (start, end) = (self.range.start.min(self.range.end), self.range.end.max(self.range.start));
         if !self.logarithmic {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 type Place = (f64, f64);
 
-/// The parts of a line through `places` that are inside a rectangle. `None` breaks the line.
+/// The parts of a line through `places` inside a rectangle. `None` breaks the line.
 pub(super) fn clipped(places: &[Option<Place>], x: &Range<f64>, y: &Range<f64>) -> Vec<Vec<Place>> {
     let mut stretches: Vec<Vec<Place>> = Vec::new();
     let mut open = false;
@@ -26,7 +26,7 @@ pub(super) fn clipped(places: &[Option<Place>], x: &Range<f64>, y: &Range<f64>) 
     stretches
 }
 
-/// The part of a line segment that is inside a rectangle (Liang and Barsky, doi:10.1145/357332.357333).
+/// The part of a line segment inside a rectangle (Liang and Barsky, doi:10.1145/357332.357333).
 fn inside(from: Place, to: Place, x: &Range<f64>, y: &Range<f64>) -> Option<(Place, Place)> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (mut first, mut last) = (0.0_f64, 1.0_f64);

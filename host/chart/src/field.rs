@@ -22,7 +22,7 @@ const SCALE_TITLE: u32 = 14;
 /// A value over a plane, drawn as a colour.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// The values and where they lie.
+    /// The values and their positions.
     pub values: Values,
     /// The axis of the values, from the first to the last colour of the scale.
     pub colours: Axis,
@@ -42,7 +42,7 @@ pub struct Cell {
     pub x: Range<f64>,
     /// Lower and upper end.
     pub y: Range<f64>,
-    /// The value; not-a-number is grey.
+    /// The value; NaN is grey.
     pub value: f64,
 }
 
@@ -84,11 +84,11 @@ impl Field {
                 for cell in cells {
                     let corners = [(cell.x.start, cell.y.end), (cell.x.end, cell.y.start)].map(|one| plane.unit(one));
                     let [Some(start), Some(end)] = corners else { continue };
-                    // Cells overlap their neighbours to the right and below, so that the background does not show
-                    // between them.
+                    // Cells overlap their right and lower neighbours, so that the background does not show between
+                    // them.
                     let under = scale.px(1) as i32;
                     let end = ((end.0 + under).min(right), (end.1 + under).min(bottom));
-                    // A value whose logarithm is undefined is zero: use the lowest colour.
+                    // A value with an undefined logarithm is zero: use the lowest colour.
                     let colour = colour(self.colours.part(cell.value).unwrap_or(0.0));
                     canvas.draw(&Rectangle::new([start, end], colour.filled()))?;
                 }
@@ -97,7 +97,7 @@ impl Field {
         }
     }
 
-    /// Draws the colour scale beside a plot whose top right corner is given; all lengths are in units.
+    /// Draws the colour scale to the right of a plot with this top right corner; all lengths are in units.
     pub(super) fn draw_scale<DB: DrawingBackend>(
         &self,
         area: &Area<DB>,

@@ -20,7 +20,7 @@ const LEFT: u32 = 30;
 pub(super) struct Legend(Vec<(String, Look)>);
 
 impl Legend {
-    /// The legend of all series that have a name.
+    /// The legend of all series with a name.
     pub(super) fn of(series: &[Series]) -> Self {
         let named = series.iter().filter(|series| !series.name.is_empty());
         Self(named.map(|series| (series.name.clone(), series.look)).collect())

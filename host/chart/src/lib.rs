@@ -41,7 +41,7 @@ const SVG_SCALE: Scale = Scale(8);
 type Area<DB> = DrawingArea<DB, Shift>;
 type Drawn = Result<(), DrawError>;
 
-/// The error that the drawing library reported.
+/// An error of the drawing library.
 #[derive(Debug, Error)]
 #[error("{0}")]
 pub struct DrawError(String);
@@ -84,7 +84,7 @@ pub struct Panel {
     pub x: Axis,
     /// The vertical axis.
     pub y: Axis,
-    /// What is plotted, the first at the bottom.
+    /// The plotted series, from bottom to top.
     pub series: Vec<Series>,
     /// A coloured field below the series.
     pub field: Option<Field>,
@@ -111,12 +111,12 @@ pub struct Margins {
     pub bottom: u32,
 }
 
-/// Points that are drawn in the same style. A series without a name does not appear in the legend.
+/// Points drawn in one style. A series without a name does not appear in the legend.
 #[derive(Clone, Debug)]
 pub struct Series {
     /// Name in the legend; empty for none.
     pub name: String,
-    /// Pairs of values; a point that is not a number interrupts the line.
+    /// Pairs of values; a NaN interrupts the line.
     pub points: Vec<(f64, f64)>,
     /// How the points are drawn.
     pub look: Look,
@@ -162,7 +162,7 @@ impl Chart {
         Self { shared_legend: true, ..self }
     }
 
-    /// Draws the chart as an SVG document. XML has no form for control characters: texts must have none.
+    /// Draws the chart as an SVG document. Texts must not contain control characters, which XML cannot represent.
     pub fn svg(&self) -> Result<String, DrawError> {
         let layout = Layout::of(self)?;
         let fine = |pixels| SVG_SCALE.px(pixels);

@@ -12,12 +12,12 @@ use plotters_backend::{
 use super::style::{Scale, load_font};
 use super::{Area, DrawError, Drawn};
 
-/// Each pixel is the mean of this many units in both directions, which smooths the edges of lines and letters.
+/// Number of units per pixel in both directions, averaged to smooth the edges of lines and letters.
 const SCALE: Scale = Scale(2);
 /// Number of grey levels: enough for the edges of letters, few enough for a palette.
 const GREYS: u32 = 17;
-/// Offset by which plotters places letters too high, as a part of their size: their box ends at 1/1.24 of it, with the
-/// baseline in the middle of the size.
+/// Vertical offset by which plotters draws letters too high, as a fraction of their size: their box ends at 1/1.24 of
+/// it, with the baseline in the middle of the size.
 const TOO_HIGH: f64 = 0.2;
 
 /// Draws a picture of the given size in pixels, and encodes it.
@@ -102,7 +102,7 @@ fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
                 let [red, green, blue] = *pixel;
                 *numbers.entry(u32::from_be_bytes([0, red, green, blue])).or_insert_with(|| {
                     palette.push(*pixel);
-                    // Of the 257th colour, it is wrong, and the palette is given up.
+                    // At the 257th colour, the index is wrong, and the palette is discarded.
                     (palette.len() - 1) as u8
                 })
             }
@@ -116,7 +116,7 @@ fn indexed(pixels: &[[u8; 3]]) -> Option<(Vec<[u8; 3]>, Vec<u8>)> {
     Some((palette, indices))
 }
 
-/// A hasher of colours, of which a picture has many and no attacker chooses any: by a multiplication.
+/// A fast multiplicative hasher of colours, which are many and not chosen by an attacker.
 #[derive(Default)]
 struct ColourHasher(u64);
 
@@ -132,13 +132,13 @@ impl Hasher for ColourHasher {
     }
 
     fn write_u32(&mut self, colour: u32) {
-        // The odd number nearest to 2^64 over the golden ratio: it spreads what differs in a few bits over all of them.
+        // The odd number nearest to 2^64 over the golden ratio spreads small differences over all bits.
         self.0 = (self.0 ^ u64::from(colour)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     }
 }
 
-/// The bitmap backend of plotters, corrected to place letters at the same height as an SVG viewer. Its own rectangles
-/// lack the right and the lower edge.
+/// The bitmap backend of plotters, corrected to draw letters at the same height as an SVG viewer, and rectangles with
+/// their right and lower edges.
 pub(super) struct Bitmap<'b>(BitMapBackend<'b>);
 
 impl<'b> DrawingBackend for Bitmap<'b> {
@@ -164,7 +164,7 @@ impl<'b> DrawingBackend for Bitmap<'b> {
         self.0.draw_pixel(place, colour)
     }
 
-    /// Draws a horizontal line without a pixel at a time: backgrounds and rectangles are made of them.
+    /// Draws a horizontal line at once, since backgrounds and rectangles consist of them.
     fn draw_line<S: BackendStyle>(
         &mut self,
         from: BackendCoord,

@@ -1,4 +1,4 @@
-//! Strips under the axis of a plot: further values along it, such as the way of a finger over its time.
+//! Strips below the axis of a plot: further values along it, such as the place of a finger over time.
 
 use std::ops::Range;
 
@@ -14,10 +14,10 @@ pub(super) const STRIP_HEIGHT: u32 = 20;
 const GAP: u32 = 8;
 /// Opacity of a cell's colour.
 const OPACITY: f64 = 0.3;
-/// Least width of a coloured cell, in pixels: a part of some milliseconds must be seen, too.
+/// Smallest width of a coloured cell, in pixels, so that a part of a few milliseconds stays visible.
 const COLOUR_WIDTH_MIN: u32 = 2;
 
-/// A row of texts under the axis of a plot.
+/// A row of texts below the axis of a plot.
 #[derive(Clone, Debug)]
 pub struct Strip {
     /// Name of the strip, to the left of the plot.
@@ -26,8 +26,8 @@ pub struct Strip {
     pub cells: Vec<StripCell>,
 }
 
-/// A text under a part of the axis. It is left out where the part is too narrow for it, except for a part without any
-/// width, at which the text is centred.
+/// A text below a part of the axis. It is omitted if the part is too narrow for it; at a part of zero width, it is
+/// centred.
 #[derive(Clone, Debug)]
 pub struct StripCell {
     /// The part of the axis.
@@ -38,7 +38,7 @@ pub struct StripCell {
     pub colour: Option<RGBColor>,
 }
 
-/// Draws strips below one another. `plot` has the left and right edge of the plot, in units; `top` is in pixels.
+/// Draws strips, one below another. `plot` has the left and right edge of the plot, in units; `top` is in pixels.
 pub(super) fn draw<DB: DrawingBackend>(
     area: &Area<DB>,
     strips: &[Strip],
