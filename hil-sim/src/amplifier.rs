@@ -1,5 +1,5 @@
-//! The amplifier: DAC code in, voltages at its output and at the electrode out, with gain error, offset, saturation,
-//! lags, a limit on its current, and the times that it takes to switch on and off.
+//! The amplifier: converts DAC codes to voltages at its output and at the electrode, with gain error, offset,
+//! saturation, lags, a current limit, and switching times.
 
 mod config;
 mod lag;
@@ -30,14 +30,14 @@ impl Output {
     }
 }
 
-/// What the output stage does.
+/// State of the output stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     /// Follows the DAC.
     On,
-    /// Is as while it was off, for so many ticks.
+    /// Behaves as while off, for this many ticks.
     TurningOn(u32),
-    /// Holds its output, for so many ticks.
+    /// Holds its output, for this many ticks.
     Holding(u32),
     /// Lets its output decay.
     Off,
@@ -50,7 +50,7 @@ pub(crate) struct Amplifier {
     volts_per_code: f64,
     saturation_v_peak: f64,
     offset_v: f64,
-    /// Distance of the electrode from the target above which the current is limited, V.
+    /// Distance of the electrode from the target above which the current limit acts, V.
     slewing_above_v: f64,
     following: Cascade,
     /// An exponential decay of the output.
@@ -62,12 +62,12 @@ pub(crate) struct Amplifier {
     turn_off_delay_ticks: u32,
     stage: Stage,
     voltages: Voltages,
-    /// What the monitor showed at the end of the tick before the last one.
+    /// Monitor voltage at the end of the tick before the last one.
     monitor_v: f64,
 }
 
 impl Amplifier {
-    /// An amplifier at rest at 0 V, behind a DAC whose code 32,767 stands for `full_scale_v_peak`.
+    /// An amplifier at rest at 0 V, with a DAC whose code 32,767 corresponds to `full_scale_v_peak`.
     pub(crate) fn new(config: &AmplifierConfig, full_scale_v_peak: f64, tick_hz: u32) -> Result<Self, OutOfRange> {
         config.check()?;
         let full_scale_v_peak = above_zero("full_scale_v_peak", full_scale_v_peak)?;
@@ -78,7 +78,7 @@ impl Amplifier {
             Decay::Exponential { time_constant_s } | Decay::HighImpedance { time_constant_s } => time_constant_s,
             Decay::Linear { .. } => 0.0,
         };
-        // A time that is above a whole number of ticks by rounding alone is that number.
+        // Avoid rounding up a time that exceeds a whole number of ticks only by rounding.
         let ticks = |time_s: f64| libm::ceil(time_s * f64::from(tick_hz) - 1e-6).max(0.0) as u32;
         let slew_v_per_s = config.slew_v_per_s;
         Ok(Self {
@@ -86,7 +86,7 @@ impl Amplifier {
             volts_per_code: config.gain * full_scale_v_peak / f64::from(i16::MAX),
             saturation_v_peak: config.saturation_v_peak,
             offset_v: config.offset_v,
-            // Infinity times zero: without a limit, nothing is above it.
+            // Infinity times zero: without a limit, nothing exceeds it.
             slewing_above_v: if slew_v_per_s.is_finite() { slew_v_per_s * electrode_tau_s } else { f64::INFINITY },
             following: cascade(config.output_time_constant_s),
             decaying: cascade(decay_tau_s),
@@ -100,7 +100,7 @@ impl Amplifier {
         })
     }
 
-    /// This amplifier with another configuration from now on. Its voltages stay.
+    /// Returns this amplifier with another configuration and the same voltages.
     pub(crate) fn reconfigured(
         &self,
         config: &AmplifierConfig,
@@ -127,13 +127,13 @@ impl Amplifier {
         }
     }
 
-    /// What the monitor shows at the beginning of the next tick. A board latches the code of a tick at the end of the
-    /// tick, and a tick of this world begins where the code is latched: so the monitor is a tick behind.
+    /// Monitor voltage at the start of the next tick. A board latches the code of a tick at the end of the tick, which
+    /// is the start of a tick of this world. The monitor is therefore one tick behind.
     pub(crate) fn monitor_v(&self) -> f64 {
         self.config.monitor_gain * self.monitor_v
     }
 
-    /// What the monitor shows at the end of the last tick.
+    /// Monitor voltage at the end of the last tick.
     #[cfg(unix)]
     pub(crate) fn monitor_now_v(&self) -> f64 {
         self.config.monitor_gain * self.voltages.output_v
@@ -167,13 +167,13 @@ impl Amplifier {
 
     fn decay(&mut self) -> Output {
         match self.config.decay {
-            // At once, as far as the limit of the current lets it.
+            // At once, within the current limit.
             Decay::Exponential { time_constant_s: 0.0 } => self.follow(0.0),
             Decay::Exponential { .. } => self.decaying.tick(&mut self.voltages, 0.0),
             Decay::Linear { v_per_s } => {
                 let output_v = self.voltages.output_v;
                 let left_v = output_v.abs() - v_per_s * self.tick_period_s;
-                // The electrode follows what the output is at the end of the tick.
+                // The electrode follows the output at the end of the tick.
                 let end_v = left_v.clamp(0.0, self.saturation_v_peak).copysign(output_v);
                 self.voltages.output_v = end_v;
                 self.following.tick(&mut self.voltages, end_v)
@@ -187,8 +187,8 @@ impl Amplifier {
         }
     }
 
-    /// A tick that begins too far from the target for the amplifier's current: a ramp of the electrode, and its lag
-    /// from the ramp's end on. Beside them, the lag of the output does not matter.
+    /// A tick that starts too far from the target for the amplifier's current: the electrode follows a ramp, and its
+    /// lag after the end of the ramp. The lag of the output is negligible in comparison.
     fn slew(&mut self, target_v: f64, distance_v: f64) -> Output {
         let slew_v_per_s = self.config.slew_v_per_s;
         let start_v = self.voltages.electrode_v;
@@ -205,7 +205,7 @@ impl Amplifier {
             return Output::new(mean_v, variance_v2, end_v);
         }
         let (ramp_mean_v, ramp_variance_v2) = ramp(ramp_s);
-        // The electrode without lag holds its target instead.
+        // An electrode without lag holds its target instead.
         let lag = Lag::new(self.config.electrode_time_constant_s, self.tick_period_s - ramp_s);
         let remaining_v = self.slewing_above_v.copysign(distance_v);
         let lag_mean_v = target_v + remaining_v * lag.mean;
@@ -222,8 +222,8 @@ impl Amplifier {
         )
     }
 
-    /// Ends a tick with the electrode at `electrode_v`. The series resistor drops no more than the limited current
-    /// lets it.
+    /// Ends a tick with the electrode at `electrode_v`. The voltage across the series resistor stays within the current
+    /// limit.
     fn settle_at(&mut self, electrode_v: f64, target_v: f64) {
         let drop_v = (target_v - electrode_v).clamp(-self.slewing_above_v, self.slewing_above_v);
         self.voltages = Voltages { output_v: electrode_v + drop_v, electrode_v };

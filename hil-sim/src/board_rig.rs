@@ -1,4 +1,5 @@
-//! What every rig has: a board with a serial line, and a world around it. A scenario runs on any of them.
+//! The common interface of all rigs: a board with a serial line, and a world around it. Every scenario runs on any of
+//! them.
 
 use core::time::Duration;
 
@@ -7,14 +8,14 @@ use thiserror::Error;
 
 use crate::{Felt, OutOfRange, WorldFault};
 
-/// A fault of a rig: of the board, or of the world around it.
+/// A fault of a rig: of the board or of its world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RigFault {
-    /// Of the world, for as long as it is said.
+    /// A fault of the world, for the given duration.
     World(WorldFault),
     /// The board is reset.
     Reset,
-    /// The board is reset, and finds wrong option bytes from then on.
+    /// The board is reset, and its option bytes are wrong from then on.
     OptionBytes,
     /// One tick of the board is late.
     LateTick,
@@ -34,23 +35,23 @@ pub struct RigTick<S = BoardView> {
     pub drive: Drive,
     /// What the finger felt.
     pub felt: Felt,
-    /// The board's status: a [`Status`] on the rig in this process, and on any rig what it knows of one.
+    /// The board's status: a [`Status`] on the in-process rig, otherwise as much as the rig knows of it.
     pub status: S,
 }
 
-/// What a rig knows of its board after a tick, beyond the levels of the pins.
+/// The board's state as known to a rig after a tick, besides the levels of the pins.
 #[derive(Clone, Copy, Debug)]
 #[allow(clippy::large_enum_variant, reason = "the in-process rig, the fast one, always has it")]
 pub enum BoardView {
-    /// All that the board could report.
+    /// The complete status.
     Status(Status),
-    /// The board's own count of the tick.
+    /// The board's own tick count only.
     Tick(u32),
     /// Nothing.
     None,
 }
 
-/// Why a rig does not do what it is asked for.
+/// Why a rig cannot carry out a request.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RigError {
     /// The rig cannot cause a fault.
@@ -58,37 +59,37 @@ pub enum RigError {
     FaultUnavailable {
         /// Name of the rig.
         rig: &'static str,
-        /// What it lacks.
+        /// The missing ability.
         reason: &'static str,
     },
-    /// A fault has a number that nothing has.
+    /// A number of a fault is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The rig has ended by itself.
+    /// The rig has stopped unexpectedly.
     #[error("{rig} has ended: {reason}")]
     Ended {
         /// Name of the rig.
         rig: &'static str,
-        /// The reason in its words.
+        /// The reason.
         reason: String,
     },
 }
 
-/// A board with a serial line, and the world around it, on a clock of ticks.
+/// A board with a serial line and the world around it, on a clock of ticks.
 ///
-/// A rig that is new implements this, and every scenario runs on it: the line's damage is made by the host's end of the
-/// line, and everything that is expected is seen from outside of the board.
+/// Implement this for a new rig to run every scenario on it. Line damage is applied at the host's end of the line, and
+/// all expectations are observed from outside the board.
 pub trait BoardRig {
     /// Name of the rig in messages.
     fn name(&self) -> &'static str;
 
-    /// The board, with the limits and the tick rate for which scenes are compiled.
+    /// The board, whose limits and tick rate are used to compile scenes.
     fn board(&self) -> &Board;
 
-    /// Ticks that have passed. It never decreases.
+    /// Number of ticks so far. It never decreases.
     fn tick(&self) -> u64;
 
-    /// The host's time.
+    /// Time on the host's clock.
     fn now(&self) -> Duration {
         Duration::from_secs_f64(self.tick() as f64 / f64::from(self.board().tick_hz))
     }
@@ -101,30 +102,29 @@ pub trait BoardRig {
         false
     }
 
-    /// Lets the rig run until bytes have arrived at the host in this call, which it appends to `received`, until there
-    /// are [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
+    /// Runs the rig until this call has received bytes for the host, which it appends to `received`, until there are
+    /// [touch frames](Self::take_touch_frames), or until `until_tick`. Passes each tick to `watch`.
     fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, watch: &mut dyn FnMut(&RigTick))
     -> Result<(), RigError>;
 
-    /// Frames with reports of the touch source that the host has to send. A board with a touch source of its own has
-    /// none.
+    /// Frames with touch reports for the host to send. Empty for a board with its own touch source.
     fn take_touch_frames(&mut self) -> Vec<u8> {
         Vec::new()
     }
 
-    /// Causes a fault from now on, for so many ticks if it lasts.
+    /// Causes a fault from now on, for this many ticks if it has a duration.
     fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError>;
 
     /// Starts the finger's stroke.
     fn start_stroke(&mut self);
 
-    /// Lets the person at the arm switch let go of it and press it again, and returns the ticks until the board has
-    /// seen it. Without a person who waits to be asked, this does nothing.
+    /// Releases the arm switch and presses it again, and returns the ticks until the board has registered it. Does
+    /// nothing on a rig without a simulated person at the switch.
     fn press_switch(&mut self) -> u64 {
         0
     }
 
-    /// Most ticks between a request and its effect, or between an event and the time at which it is seen.
+    /// Largest delay between a request and its effect, or between an event and its observation, in ticks.
     fn lateness_ticks(&self) -> u64 {
         0
     }

@@ -1,14 +1,14 @@
-//! Emulated boards, and the simulator around them: `qemu-system-arm -M mps2-an386` with a firmware of its own, and the
-//! image of the Pico on `rp2040js`.
+//! Emulated boards and their simulator: `qemu-system-arm -M mps2-an386` with its own firmware, and the Pico's image on
+//! `rp2040js`.
 //!
-//! - [`Image::find`] finds the image that has come with the program, or builds it if necessary.
+//! - [`Image::find`] finds the image shipped with the program, or builds it if necessary.
 //! - [`replay`] sends the board the inputs of a [`Journal`](crate::Journal) of the in-process rig and compares its
 //!   outputs, bit for bit. The board advances only when it receives a tick; wall time has no influence.
 //! - [`LinkBoard`] lets the board tick by itself, with its serial port behind a pseudo-terminal for a real host, and a
-//!   [`World`](crate::World) that follows the board's output. Virtual time is never ahead of wall time.
-//! - [`PicoRig`] drives an emulator that others wrote, in lockstep, by the levels of the board's pins.
+//!   [`World`](crate::World) that follows the board's output. Virtual time never runs ahead of wall time.
+//! - [`PicoRig`] drives a third-party emulator in lockstep, through the levels of the board's pins.
 //!
-//! Simulator and MPS2 board share the board's PSRAM, which is a file; [`frixel_exchange`] describes its content.
+//! The simulator and the MPS2 board share the board's PSRAM as a file; [`frixel_exchange`] describes its content.
 
 mod error;
 mod harness;

@@ -15,7 +15,7 @@ pub struct OutOfRange {
     pub found: f64,
 }
 
-/// Why a world cannot be made.
+/// Why a world cannot be created.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum WorldError {
     /// A number of the configuration is out of range.
@@ -37,7 +37,7 @@ pub(crate) fn above_zero(name: &'static str, found: f64) -> Result<f64, OutOfRan
 
 /// Returns `found` if it is from zero to ten.
 ///
-/// Ten seconds is the limit of every delay in the world: a longer one is probably a mistaken unit, and would make the
+/// Ten seconds is the limit of every delay in the world. A longer one is probably in the wrong unit, and would make the
 /// queues grow.
 pub(crate) fn zero_to_ten(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
     if (0.0..=10.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 10", found }) }

@@ -1,8 +1,8 @@
 //! The fingertip: converts the voltage on the electrode to friction.
 //!
-//! The contact model gives the steady friction at a voltage and a load. The rest is what the model leaves out, each
-//! with a switch in [`FingertipConfig`]: a load that wanders, the friction coefficient's dependence on it, noise, the
-//! distance over which friction follows, and charge that leaks through the skin.
+//! The contact model gives the steady friction at a voltage and a load. [`FingertipConfig`] adds effects beyond the
+//! model, each with a switch: a varying load, a load-dependent friction coefficient, noise, the distance over which
+//! friction follows, and charge leakage through the skin.
 
 mod config;
 mod leakage;
@@ -22,7 +22,7 @@ use noise::FrictionNoise;
 use sliding::Sliding;
 pub use sliding::{SlipStep, one_minus_exp};
 
-/// The least voltage at which electric friction under two loads is compared, in V rms.
+/// Smallest voltage at which electric friction under two loads is compared, V rms.
 const COMPARED_V_RMS: f64 = 1.0;
 
 /// The example finger on the example screen: 0.25 N at no voltage and 130 mN more at 150 V rms, under a load of 0.5 N.
@@ -40,20 +40,20 @@ pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
 pub(crate) struct Friction {
     /// Friction without the drive.
     pub(crate) natural_friction_n: f64,
-    /// Friction that the voltage adds.
+    /// Friction added by the voltage.
     pub(crate) electric_friction_n: f64,
     pub(crate) normal_load_n: f64,
-    /// The part of the friction that comes from a load other than the profile's, in N.
+    /// Friction error caused by a load other than the profile's, N.
     pub(crate) load_mismatch_n: f64,
     pub(crate) slip: SlipStep,
 }
 
-/// The friction under the present load less that under the load of the scene's finger.
+/// Difference between the friction under the current load and under the load of the scene's finger.
 #[derive(Clone, Copy, Debug, Default)]
 struct LoadMismatch {
-    /// Natural friction in steady sliding, without noise, less that under the load of the scene's finger, in N.
+    /// Difference of natural friction in steady sliding, without noise, N.
     natural_n: f64,
-    /// Part of the electric friction that comes from a load other than that of the scene's finger.
+    /// Fraction of the electric friction caused by the different load.
     electric_share: f64,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct Fingertip {
     config: FingertipConfig,
     /// The finger under the load of the profile.
     profile: FrictionLaw,
-    /// The load of the profile, in N.
+    /// The load of the profile, N.
     profile_load_n: f64,
     /// The load of the finger that the scene is compiled for, in N.
     scene_load_n: f64,
@@ -126,8 +126,8 @@ impl Fingertip {
         self.scene_load_n = law.normal_load_n();
     }
 
-    /// Returns the friction at the end of a tick, in which the finger slid to `finger` over an electrode with the
-    /// voltage of `output`. `measured_load_n` replaces the load that wanders, if there is one.
+    /// Returns the friction at the end of a tick in which the finger slid to `finger` over an electrode with the
+    /// voltage of `output`. `measured_load_n`, if any, replaces the varying load.
     ///
     /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters.
     pub(crate) fn slide(&mut self, output: &Output, finger: &FingerState, measured_load_n: Option<f64>) -> Friction {
@@ -171,11 +171,11 @@ impl Fingertip {
         if self.config.pre_sliding { slip.advance(&mut self.natural_n, steady_n) } else { steady_n }
     }
 
-    /// Presses with the load of this moment.
+    /// Presses with the current load.
     fn press(&mut self, measured_load_n: Option<f64>, voltage_v_rms: f64) {
         let load_n = measured_load_n.unwrap_or_else(|| self.wander.load_n(self.profile_load_n));
         let compared_v_rms = voltage_v_rms.max(COMPARED_V_RMS);
-        // A load that the model rejects leaves the one before.
+        // Keep the previous load if the model rejects this one.
         let Ok(law) = self.profile.under_load(load_n) else { return };
         if law != self.law {
             self.law = law;
@@ -197,7 +197,7 @@ impl Fingertip {
         }
     }
 
-    /// How the present load changes the friction; `None` if it is the load of the scene's finger.
+    /// The effect of the current load on friction; `None` if it equals the load of the scene's finger.
     fn load_mismatch(&self, compared_v_rms: f64) -> Option<LoadMismatch> {
         if (self.load_n - self.scene_load_n).abs() <= f64::EPSILON * self.scene_load_n {
             return None;

@@ -4,9 +4,9 @@ use frixel_exchange::{TickInput, TickOutput};
 
 /// Input and output of a board at each of its first ticks, as words of [`frixel_exchange`].
 ///
-/// [`Rig::start_journal`](crate::Rig::start_journal) starts one. Replaying the inputs to another board and comparing
-/// the outputs shows whether the two boards behave the same. The inputs stay valid as long as the outputs are equal,
-/// since the world would have responded in the same way.
+/// [`Rig::start_journal`](crate::Rig::start_journal) starts one. Replay its inputs on another board and compare the
+/// outputs to check whether both boards behave identically. The inputs stay valid as long as the outputs are equal,
+/// since the world would have responded identically.
 #[derive(Clone, Debug, Default)]
 pub struct Journal {
     inputs: Vec<u32>,

@@ -4,16 +4,15 @@
 //!   [`Drive`], and returns what the finger [felt](Felt).
 //! - [`Stroke`]: the place of the finger over time.
 //! - [`Rig`]: a board and its world on one thread.
-//! - [`BoardRig`]: what a scenario needs of any rig: a board with a serial line, and faults of both.
+//! - [`BoardRig`]: the common interface of rigs for scenarios: a board with a serial line, and faults of both.
 //! - [`chips`]: models of the chips on a board, for their drivers to run against.
-//! - [`emulated`]: the firmware's image for an emulated board, and what the in-process board is compared with.
-//! - [`looped_board`]: a board with the wires of the self-test, with or without something wrong.
-//! - [`Line`]: one direction of a serial line, whose bytes take the time that the line rate gives them; [`LineNoise`]:
-//!   what a bad one does to them.
+//! - [`emulated`]: emulated boards, and their comparison with the in-process board.
+//! - [`looped_board`]: a board with the self-test's wires, optionally with one defect.
+//! - [`Line`]: one direction of a serial line at its line rate; [`LineNoise`]: damage to its bytes.
 //!
-//! Nothing here knows wall time, and everything random comes from a seed: the same run gives the same bytes on every
-//! platform. Mathematics comes from `libm` by name for that reason; `+ - * /` and the square root of `f64` are rounded
-//! correctly everywhere.
+//! The simulator does not use wall time, and all random numbers come from a seed: the same run gives the same bytes on
+//! every platform. For that reason, mathematical functions come from `libm` by name; `+ - * /` and the square root of
+//! `f64` are correctly rounded everywhere.
 #![forbid(unsafe_code)]
 
 mod amplifier;

@@ -12,16 +12,16 @@ const BITS_PER_BYTE: u64 = 10;
 pub enum LineFault {
     /// The byte is lost.
     Drop,
-    /// The bits that are set here are inverted.
+    /// The set bits are inverted.
     Flip(u8),
     /// The cable is cut: this byte and all that follow are lost.
     Cut,
 }
 
-/// Numbers of bytes by their fate on the line.
+/// Byte counts by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineCounts {
-    /// Bytes passed to [`Line::send`], overruns included.
+    /// Bytes passed to [`Line::send`], including overruns.
     pub sent: u64,
     /// Bytes that arrived, including those with flipped bits.
     pub delivered: u64,
@@ -29,7 +29,7 @@ pub struct LineCounts {
     pub lost: u64,
     /// Bytes that arrived with flipped bits.
     pub flipped: u64,
-    /// Bytes rejected because the queue was full. They are not sent, and have no number.
+    /// Bytes rejected because the queue was full. They are not sent, and have no index.
     pub overrun: u64,
 }
 
@@ -65,7 +65,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line of `baud` bits a second, advanced `tick_hz` times a second; both above 0.
+    /// A line of `baud` bits per second, advanced at `tick_hz`; both above 0.
     pub fn new(baud: u32, tick_hz: u32) -> Result<Self, OutOfRange> {
         for (name, value) in [("baud", baud), ("tick_hz", tick_hz)] {
             if value == 0 {
@@ -85,13 +85,13 @@ impl Line {
         })
     }
 
-    /// Schedules `fault` for byte number `byte`, counted from 0 when the line was made. A later fault of the same byte
-    /// replaces an earlier one. A byte that has left the line already is not changed.
+    /// Schedules `fault` for byte number `byte`, counted from 0 since creation. It replaces an earlier fault of the
+    /// same byte, and has no effect on a byte that has already left the line.
     pub fn schedule_fault(&mut self, byte: u64, fault: LineFault) {
         self.faults.insert(byte, fault);
     }
 
-    /// From now on, limits the queue to `len` bytes. Bytes sent beyond that are lost.
+    /// Limits the queue to `len` bytes from now on. Further bytes are lost.
     pub fn limit_queue(&mut self, len: usize) {
         self.queue_max_len = len;
     }

@@ -1,20 +1,20 @@
-//! Damage of the bytes on a line: bits inverted, bytes lost and doubled, at random.
+//! Random damage to the bytes on a line: inverted bits, lost bytes and doubled bytes.
 
 use crate::error::{OutOfRange, zero_to_one};
 use crate::random::{Purpose, Random};
 
-/// What a bad line does to the bytes on it. The default does nothing.
+/// Damage on a bad line. The default is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseConfig {
-    /// Part of the bits that are inverted, from 0 to 1.
+    /// Fraction of inverted bits, from 0 to 1.
     pub bit_error_rate: f64,
-    /// Part of the bytes that are lost, from 0 to 1.
+    /// Fraction of lost bytes, from 0 to 1.
     pub lost_share: f64,
-    /// Part of the bytes that arrive twice, from 0 to 1.
+    /// Fraction of bytes that arrive twice, from 0 to 1.
     pub doubled_share: f64,
 }
 
-/// One direction of a bad line. Each bit and each byte has its fate of its own.
+/// One direction of a bad line. Damage is independent for each bit and each byte.
 ///
 /// ```
 /// use frixel_hil_sim::{LineNoise, NoiseConfig};
@@ -30,22 +30,22 @@ pub struct NoiseConfig {
 pub struct LineNoise {
     config: NoiseConfig,
     random: Random,
-    /// Bits that arrive as they are before the next one that is inverted.
+    /// Number of intact bits before the next inverted one.
     bits_left: u64,
 }
 
 impl LineNoise {
-    /// A line that does nothing to its bytes until [`Self::set`].
+    /// A line without damage until [`Self::set`].
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { config: NoiseConfig::default(), random: Random::new(seed, Purpose::LineNoise), bits_left: u64::MAX }
     }
 
-    /// Sets what the line does from now on.
+    /// Sets the damage from now on.
     ///
     /// # Errors
     ///
-    /// [`OutOfRange`] names a part that is not from 0 to 1; the line stays as it is.
+    /// [`OutOfRange`] names a fraction outside 0 to 1; the line stays unchanged.
     pub fn set(&mut self, config: NoiseConfig) -> Result<(), OutOfRange> {
         zero_to_one("line bit_error_rate", config.bit_error_rate)?;
         zero_to_one("line lost_share", config.lost_share)?;
@@ -55,7 +55,7 @@ impl LineNoise {
         Ok(())
     }
 
-    /// Appends to `arrived` what arrives of `bytes`.
+    /// Passes `bytes` over the line, and appends the result to `arrived`.
     pub fn pass(&mut self, bytes: &[u8], arrived: &mut Vec<u8>) {
         let NoiseConfig { lost_share, doubled_share, .. } = self.config;
         for byte in bytes {
@@ -70,7 +70,7 @@ impl LineNoise {
         }
     }
 
-    /// The bits of the next byte that are inverted.
+    /// The inverted bits of the next byte.
     fn draw_flips(&mut self) -> u8 {
         let mut flips = 0;
         let mut bit = 0;
@@ -84,7 +84,7 @@ impl LineNoise {
         flips
     }
 
-    /// Bits before the next one that is inverted: geometrically distributed.
+    /// Number of bits before the next inverted one: geometrically distributed.
     fn draw_gap(&mut self) -> u64 {
         let rate = self.config.bit_error_rate;
         if rate <= 0.0 {

@@ -1,5 +1,5 @@
-//! A simulated board with the wires of the self-test, which can have one thing wrong: what
-//! [`frixel_board::self_test`] must find. Its session, ticker and supervisor are the firmware's own.
+//! A simulated board with the self-test's wires and at most one defect, which [`frixel_board::self_test`] must find.
+//! Its session, ticker and supervisor are the firmware's own.
 
 mod one_shot;
 #[cfg(unix)]
@@ -29,7 +29,7 @@ const ROUND_TICKS: u32 = 4;
 /// Cycles of a tick at rest, and under the largest scene.
 const IDLE_CYCLES: u32 = 1_000;
 const LOADED_CYCLES: u32 = 2_300;
-/// The same on a board whose flash is slower than assumed, and the deadline of its ticks.
+/// The same on a board with slower flash than assumed, and the deadline of its ticks.
 const SLOW_CYCLES: u32 = 2_900;
 const DEADLINE_CYCLES: u32 = 3_700;
 
@@ -38,16 +38,16 @@ pub trait Port {
     /// Takes bytes for the board, and returns their number; 0 if there are none.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
 
-    /// Takes bytes from the board, and returns the number of those that it took.
+    /// Takes bytes from the board, and returns the number taken.
     fn write(&mut self, bytes: &[u8]) -> usize;
 
-    /// So many ticks have passed on the board: waits, if there is a clock to wait for.
+    /// Called when `ticks` have passed on the board; waits if there is a real-time clock.
     fn pace(&mut self, ticks: u32);
 
-    /// The board waits for a byte. Returns `false` if there will be none.
+    /// Called when the board waits for a byte. Returns `false` if there will be none.
     fn wait(&mut self) -> bool;
 
-    /// The board has said everything, and stays on: returns once nobody reads it any more.
+    /// Called when the board has sent everything and stays on; returns once there are no readers.
     fn end(&mut self);
 }
 
@@ -61,7 +61,7 @@ pub struct LoopedRig<P> {
     ticker: Ticker<'static>,
     status: Status,
     meter: TickMeter,
-    /// Bytes that the board has received, for a line that loses some.
+    /// Number of bytes received by the board, for a line that loses some.
     received: usize,
     latch_moved: bool,
     one_shot: OneShot,
@@ -72,7 +72,7 @@ pub struct LoopedRig<P> {
 }
 
 impl<P: Port> LoopedRig<P> {
-    /// A board with one thing wrong, or [`Wrong::Nothing`].
+    /// A board with one defect, or [`Wrong::Nothing`].
     pub fn new(port: P, wrong: Wrong) -> Self {
         let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
         let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
@@ -98,7 +98,7 @@ impl<P: Port> LoopedRig<P> {
     /// Runs the self-test to its end.
     pub fn run(&mut self) -> Result<u32, Stop> {
         let result = frixel_board::self_test::run(self);
-        // What the script has left as it is goes on.
+        // Timers that the script has left running continue.
         (0..10 * one_shot::ONE_SHOT_US * one_shot::CYCLES_PER_US).for_each(|_| _ = self.cycles());
         self.port.end();
         result
@@ -113,7 +113,7 @@ impl<P: Port> LoopedRig<P> {
         self.wrong == wrong
     }
 
-    /// Microseconds for which the enable has been high while ready was high or the arm switch closed.
+    /// Microseconds for which the enable was high while ready was high or the arm switch closed.
     pub fn refused_us(&self) -> u32 {
         self.one_shot.refused_us()
     }
@@ -132,7 +132,7 @@ impl<P: Port> LoopedRig<P> {
         }
     }
 
-    /// A kick may switch an amplifier on: only a board on which nothing of one was found may have it.
+    /// A kick may switch on an amplifier, so it is allowed only on a board without any sign of one.
     fn check_kick(&self) {
         assert!(self.said_unplugged, "a kick before the person has unplugged the amplifier");
         assert!(self.enable_was_found_low, "a kick before the wire was found with the enable low");
@@ -173,7 +173,7 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
         let mut byte = [0];
         loop {
             if self.ticks_run {
-                // The tick goes on, and the switch is not held.
+                // The tick continues, with the switch released.
                 self.round(false);
             }
             if self.port.read(&mut byte) == 0 {

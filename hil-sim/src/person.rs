@@ -9,22 +9,22 @@ use crate::world::OwnFinger;
 /// Largest distance of a person from the middle of the population, in standard deviations.
 const DRAW_LIMIT: f64 = 2.5;
 
-/// A person, as their finger differs from others.
+/// A person, with individual finger parameters.
 ///
-/// Assumed throughout: the directions are published, the sizes are not measured. One number, the moisture, moves the
-/// friction coefficient, the gap and the leakage together: moist skin slides less easily than dry skin, needs more
-/// voltage for the same effect, and has a smaller impedance (arXiv 2409.16936). What is left differs at random.
+/// Assumed throughout: the directions are published, the magnitudes are not measured. One number, the moisture, changes
+/// friction coefficient, gap and leakage together. Moist skin slides less easily than dry skin, needs more voltage for
+/// the same effect, and has a smaller impedance (arXiv 2409.16936). The remaining differences are random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Person {
     /// Moisture of the skin, in standard deviations from the middle of the population.
     pub moisture: f64,
     /// Radius, stiffness and friction coefficient of the finger.
     pub finger: Finger<f64>,
-    /// Effective gap of skin and air, beside that of the screen's coating, m.
+    /// Effective gap of skin and air, in addition to the coating's, m.
     pub skin_gap_m: f64,
-    /// The load that the person presses with, N.
+    /// Normal load of the person's finger, N.
     pub normal_load_n: f64,
-    /// What their finger does beside the contact model.
+    /// Effects of the finger beyond the contact model.
     pub fingertip: FingertipConfig,
 }
 
@@ -58,7 +58,7 @@ impl Person {
         let leakage_hz = around(250.0, 0.5, 0.2);
         let usual = FingertipConfig::REALISTIC;
         let fingertip = FingertipConfig {
-            // Both were measured under 0.53 N, and grow with what they are a part of.
+            // Both were measured at 0.53 N, and are proportional to the load and to the friction.
             load_sd_n: usual.load_sd_n * normal_load_n / 0.53,
             noise_rms_n: usual.noise_rms_n * finger.friction_coefficient * normal_load_n / (0.5 * 0.53),
             load_exponent: 0.15 * draw(),

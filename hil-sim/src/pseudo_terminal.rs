@@ -18,7 +18,7 @@ pub struct PseudoTerminal {
     client_end: File,
     path: String,
     presence: Presence,
-    /// Bytes have arrived since [`Self::client_has_gone`] was last called.
+    /// Whether bytes have arrived since the last call of [`Self::client_has_gone`].
     heard: bool,
 }
 
@@ -57,9 +57,9 @@ impl PseudoTerminal {
         if bytes.is_empty() { Ok(0) } else { now((&self.board_end).write(bytes)) }
     }
 
-    /// Returns `true` once after the last client has closed the terminal. Bytes that it has not read are dropped, and
-    /// the next client may open the terminal. Bytes that the client has written can still be read, because they
-    /// include the commands that end its session.
+    /// Returns `true` once after the last client has closed the terminal. Its unread bytes are dropped, and the next
+    /// client may open the terminal. Bytes written by the client can still be read, since they include the commands
+    /// that end its session.
     pub fn client_has_gone(&mut self) -> io::Result<bool> {
         if !self.presence.has_ended(std::mem::take(&mut self.heard))? {
             return Ok(false);
@@ -125,7 +125,7 @@ mod presence {
     }
 }
 
-/// Other systems do not report when a client closes the terminal. A client that is silent for long counts as gone.
+/// Other systems do not report when a client closes the terminal. A client counts as gone after a long silence.
 #[cfg(not(target_os = "linux"))]
 mod presence {
     use std::io;

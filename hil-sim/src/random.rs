@@ -3,7 +3,7 @@
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// The purpose of a stream of random numbers. Each purpose has a stream of its own, so that a new use changes no
+/// The purpose of a stream of random numbers. Each purpose has its own stream, so that a new use does not change the
 /// others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Purpose {
@@ -22,7 +22,7 @@ pub(crate) enum Purpose {
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     generator: Pcg64,
-    /// The polar method makes two Gaussian numbers at a time; this is the second.
+    /// The polar method produces two Gaussian numbers at a time; this is the second.
     spare: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Random {
         Self { generator: Pcg64::seed_from_u64(seed), spare: None }
     }
 
-    /// Evenly spread over `0 <= u < 1`, in steps of 2^-53.
+    /// Uniform over `0 <= u < 1`, in steps of 2^-53.
     pub(crate) fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.generator.next_u64() >> 11) as f64 * STEP
@@ -57,7 +57,7 @@ impl Random {
         }
     }
 
-    /// Gaussian as [`gaussian`](Self::gaussian), drawn again while it lies more than `limit > 0` from 0.
+    /// Gaussian as in [`gaussian`](Self::gaussian), redrawn while it is farther than `limit > 0` from 0.
     pub(crate) fn gaussian_within(&mut self, limit: f64) -> f64 {
         loop {
             let draw = self.gaussian();

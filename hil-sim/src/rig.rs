@@ -12,14 +12,15 @@ use frixel_wire::message::Refusal;
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
 use crate::{AmplifierConfig, Journal, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
-/// Room in a board's receive buffer beyond the host's credit: for hello requests, which need no credit, and for noise.
+/// Capacity of a board's receive buffer beyond the host's credit, for hello requests, which need no credit, and for
+/// noise.
 const RECEIVE_MARGIN_LEN: usize = 512;
-/// Cycles of a late tick, as the board reports them: above the 4,250 that a tick at 40 kHz has on the G474.
+/// Cycles of a late tick, as reported by the board: above the 4,250 available at 40 kHz on the G474.
 const LATE_TICK_CYCLES: u32 = 4_300;
 /// Name of the rig in messages.
 const NAME: &str = "sim";
 
-/// Memory of a simulated board, which a real board has in statics. It is large, so it is boxed.
+/// Memory of a simulated board, which a real board has in statics. Boxed, since it is large.
 pub struct BoardMemory {
     pool: BitmapPool,
     actives: [Active; 2],
@@ -35,8 +36,8 @@ impl BoardMemory {
         Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
     }
 
-    /// Bytes of coefficients that a scene fills in a board's RAM, in the active buffer and in the buffer in which the
-    /// next scene is built.
+    /// Bytes of coefficients that a scene occupies in a board's RAM, in the active buffer and in the buffer of the next
+    /// scene.
     #[must_use]
     pub fn bytes_filled(scene: &Scene) -> usize {
         active_bytes_filled(scene)
@@ -60,7 +61,7 @@ pub struct RigConfig {
 }
 
 impl Default for RigConfig {
-    /// The simulator's own board behind [`AmplifierConfig::IDEAL`].
+    /// The simulator's own board with [`AmplifierConfig::IDEAL`].
     fn default() -> Self {
         let rig = Self::of(Board::SIMULATOR);
         Self { world: WorldConfig { amplifier: AmplifierConfig::IDEAL, ..rig.world }, ..rig }
@@ -68,7 +69,7 @@ impl Default for RigConfig {
 }
 
 impl RigConfig {
-    /// A rig of a board in [the world that the board expects](WorldConfig::of).
+    /// A rig of a board in [the world that it expects](WorldConfig::of).
     pub fn of(board: Board) -> Self {
         Self { board, world: WorldConfig::of(&board), baud: 2_000_000 }
     }
@@ -101,12 +102,12 @@ pub struct Rig<'a> {
     journal: Option<Journal>,
     tick: u64,
     board: Board,
-    /// Memory for the starts to come: that of the start before is still borrowed.
+    /// Memory for further starts, since that of the current start is borrowed.
     spare: core::slice::IterMut<'a, Box<BoardMemory>>,
 }
 
 impl<'a> Rig<'a> {
-    /// A board after reset, in a world whose finger will make `stroke`.
+    /// A board after reset, in a world whose finger will perform `stroke`.
     pub fn new(memory: &'a mut BoardMemory, config: &RigConfig, stroke: Stroke, seed: u64) -> Result<Self, WorldError> {
         let tick_hz = config.board.tick_hz;
         let (session, ticker) = started(config.board, memory);
@@ -129,20 +130,20 @@ impl<'a> Rig<'a> {
         })
     }
 
-    /// Adds memory for the starts after a [`RigFault::Reset`] or [`RigFault::OptionBytes`], which take one each.
+    /// Adds memory for restarts by [`RigFault::Reset`] or [`RigFault::OptionBytes`], one per restart.
     #[must_use]
     pub fn with_spare_memories(self, memories: &'a mut [Box<BoardMemory>]) -> Self {
         Self { spare: memories.iter_mut(), ..self }
     }
 
-    /// Resets the board, which starts with `memory`. World and line go on.
+    /// Resets the board, which restarts with `memory`. World and line continue.
     pub fn reset(&mut self, memory: &'a mut BoardMemory) {
         (self.session, self.ticker) = started(self.board, memory);
         self.status = self.ticker.status();
         self.scene = None;
     }
 
-    /// Lets the board find a fault of its own, as a late tick does.
+    /// Raises a fault detected by the board itself, such as a late tick.
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         self.ticker.raise(fault, detail);
     }
@@ -177,15 +178,14 @@ impl<'a> Rig<'a> {
         self.session.frame_counts()
     }
 
-    /// Sends bytes from the host. Bytes beyond a host's credit and a margin for messages without credit are lost, as
-    /// on a board whose receive buffer is full. So no byte arrives later than it could from a host that respects its
-    /// credit.
+    /// Sends bytes from the host. Bytes beyond the host's credit and a margin for messages without credit are lost, as
+    /// on a board with a full receive buffer. Thus no byte arrives later than from a host that respects its credit.
     pub fn send(&mut self, bytes: &[u8]) {
         self.to_board.send(bytes);
     }
 
-    /// Sets whether the host has stopped reading. Meanwhile the line takes no bytes from the board, like a port whose
-    /// buffer is full, and the board's output waits in its transmit queue.
+    /// Sets whether the host has stopped reading. Meanwhile the line accepts no bytes from the board, like a port with
+    /// a full buffer, and the board's output waits in its transmit queue.
     pub fn set_host_away(&mut self, is_away: bool) {
         self.host_is_away = is_away;
     }
@@ -201,7 +201,7 @@ impl<'a> Rig<'a> {
     }
 
     /// Starts a journal of all input and output of the board. Call this before the first tick, so that the journal can
-    /// be replayed to another board.
+    /// be replayed on another board.
     pub fn start_journal(&mut self) {
         self.journal = Some(Journal::new());
     }
@@ -239,14 +239,14 @@ impl<'a> Rig<'a> {
         RigTick { tick: self.tick, drive, felt, status: self.status }
     }
 
-    /// The board's input. The person at the arm switch lets go of it and presses it again when the board wants that.
+    /// The board's input. The simulated person releases the arm switch and presses it again on request of the board.
     fn sense(&self) -> Sense {
         let sense = self.world.sense();
         let is_held = !self.ticker.waits_for_release() || self.world.is_switch_welded();
         Sense { arm_switch: sense.arm_switch && is_held, ..sense }
     }
 
-    /// Passes the session's next order to the ticker, which takes one before each tick.
+    /// Passes the session's next order to the ticker, one before each tick.
     fn deliver_orders(&mut self) {
         let Some(order) = self.session.next_order() else { return };
         let is_new_scene = matches!(order, Order::Load(_));
@@ -262,20 +262,20 @@ impl<'a> Rig<'a> {
     fn put_scenes_finger_on(&mut self) {
         self.scene = self.session.scene_header().copied();
         let Some(header) = self.scene else { return };
-        // The knots of an empirical law depend on the voltage that the board can give.
+        // The knots of an empirical law depend on the board's largest voltage.
         let Ok(voltage_max_v_rms) = voltage_max_v_rms(&header, &self.board) else { return };
         if let Ok(law) = (Header { voltage_max_v_rms, ..header }).friction_law() {
             self.world.set_finger(law);
         }
     }
 
-    /// Number of bytes that the line accepts now. Its queue is limited like that of a port; more bytes wait on the
-    /// board, which omits telemetry when too many do.
+    /// Number of bytes that the line accepts now. Its queue is limited like a port's; further bytes wait on the board,
+    /// which omits telemetry if too many do.
     fn room(&self) -> u8 {
         if self.host_is_away { 0 } else { TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8 }
     }
 
-    /// Moves bytes from the board's transmit queue to the line, as far as there is room, and returns them.
+    /// Moves bytes from the board's transmit queue to the line, as long as there is room, and returns them.
     fn transmit(&mut self, room: u8) -> TickBytes {
         let mut bytes = [0; TICK_BYTES_MAX];
         let count = self.session.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
@@ -288,7 +288,7 @@ impl<'a> Rig<'a> {
     }
 }
 
-/// A board that has just started.
+/// A freshly started board.
 fn started(board: Board, memory: &mut BoardMemory) -> (Session<'_>, Ticker<'_>) {
     let BoardMemory { pool, actives: [first, second], stream } = memory;
     let mut ticker = Ticker::new(&board, pool, first);

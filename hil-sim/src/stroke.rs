@@ -39,13 +39,13 @@ pub struct FingerState {
 pub struct StrokeRow {
     /// Time from the start of the stroke, s.
     pub t_s: f64,
-    /// Where the finger is; `None` while it is off the screen.
+    /// Place of the finger; `None` while it is off the screen.
     pub place: Option<Point>,
-    /// Normal load, N; `None` if it is not known.
+    /// Normal load, N; `None` if unknown.
     pub normal_load_n: Option<f64>,
 }
 
-/// The motion of a finger over the screen, with the finger up before its start and after its end.
+/// Motion of a finger over the screen. The finger is up before the start and after the end.
 ///
 /// ```
 /// use frixel_hil_sim::{Point, Stroke};
@@ -64,7 +64,7 @@ pub struct Stroke {
     path: Path,
     /// Time at which the finger leaves the screen, s.
     end_s: f64,
-    /// Time from one round to the next if the stroke is looped, s.
+    /// Period of a looped stroke, s.
     round_s: Option<f64>,
 }
 
@@ -84,42 +84,42 @@ impl Stroke {
         Ok(Self::once(straight.duration_s(), Path::ConstantSpeed(straight)))
     }
 
-    /// A straight stroke of minimum jerk (Flash and Hogan, doi:10.1523/JNEUROSCI.05-07-01688.1985): at rest at both
-    /// ends, and 1.875 times the mean speed in the middle, as a hand moves. `duration_s` is above 0.
+    /// A straight stroke of minimum jerk (Flash and Hogan, doi:10.1523/JNEUROSCI.05-07-01688.1985), like a hand
+    /// movement: at rest at both ends, and at 1.875 times the mean speed in the middle. `duration_s` is above 0.
     pub fn minimum_jerk(from: Point, to: Point, duration_s: f64) -> Result<Self, StrokeError> {
         let straight = Straight::lasting(from, to, duration_s)?;
         Ok(Self::once(straight.duration_s(), Path::MinimumJerk(straight)))
     }
 
-    /// A finger that rests at a place for `duration_s` seconds, above 0.
+    /// A resting finger for `duration_s` seconds, above 0.
     pub fn still(place: Point, duration_s: f64) -> Result<Self, StrokeError> {
         let straight = Straight::lasting(place, place, duration_s)?;
         Ok(Self::once(straight.duration_s(), Path::ConstantSpeed(straight)))
     }
 
-    /// The stroke of a person who explores a texture: back and forth across the screen in slightly oblique strokes of
-    /// minimum jerk, about 100 mm/s on average, with the finger down for all of `duration_s` seconds (above 0).
+    /// The stroke of a person exploring a texture: back and forth across the screen in slightly oblique strokes of
+    /// minimum jerk, at about 100 mm/s on average, with the finger down for `duration_s` seconds (above 0).
     ///
-    /// It keeps a tenth of the screen away from every edge, and consists of whole strokes. If `duration_s` is too
-    /// short for a full stroke at this speed, the stroke is shorter.
+    /// It stays a tenth of the screen away from every edge, and consists of whole strokes. If `duration_s` is too short
+    /// for a full stroke at this speed, the stroke is shorter.
     pub fn sweep(screen_width_m: f64, screen_height_m: f64, duration_s: f64) -> Result<Self, StrokeError> {
         let sweep = Sweep::new(screen_width_m, screen_height_m, duration_s)?;
         Ok(Self::once(duration_s, Path::Sweep(sweep)))
     }
 
     /// Touches with the statistics of people recorded on a surface-haptic tablet, for `duration_s` seconds, 0.001 to
-    /// 600: the finger lands, crosses a part of the screen with a speed and a heading that wander, lifts, and lands
-    /// again; few touches turn on the way. Without a median speed, above 0 and at most 10 m/s, the stroke has that of
-    /// the seed's person, 48 to 436 mm/s.
+    /// 600. The finger lands, crosses a part of the screen with varying speed and heading, lifts, and lands again; few
+    /// touches reverse on the way. The default median speed depends on the seed's person, 48 to 436 mm/s; an explicit
+    /// one is above 0 and at most 10 m/s.
     ///
-    /// Acceleration below 8 Hz, 95th percentile of speed and duration of the touches at each median speed are those of
-    /// about 1,300 strokes, whose recordings cannot be shipped, as they come out of a reconstruction that smooths
-    /// ([`Self::human_rough`] has another). A touch ends at the margin of the screen, so on a small screen fast touches
-    /// are shorter than the recorded ones. Between milliseconds the finger goes straight. There is tremor at 8 to 12
-    /// Hz, whose size is assumed.
+    /// Acceleration below 8 Hz, 95th percentile of speed, and duration of touches match those of about 1,300 recorded
+    /// strokes at each median speed. The recordings cannot be shipped, and were reconstructed with smoothing
+    /// ([`Self::human_rough`] uses another reconstruction). A touch ends at the margin of the screen, so fast touches
+    /// on a small screen are shorter than the recorded ones. Positions are interpolated linearly between milliseconds.
+    /// Tremor from 8 to 12 Hz is included, with an assumed amplitude.
     ///
-    /// Tests judge on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`].
-    /// [`Self::sweep`] is an even stroke: it has no random part, and goes on for any time.
+    /// Tests are evaluated on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`]. [`Self::sweep`]
+    /// is a deterministic stroke of any duration.
     ///
     /// ```
     /// use frixel_hil_sim::Stroke;
@@ -140,8 +140,8 @@ impl Stroke {
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
-    /// As [`Self::human`], with the acceleration that the recorded strokes have in a reconstruction that does not
-    /// smooth, whose noise of pixels and times is in it: 2 to 5 times as much. What fingers did lies between the two.
+    /// Like [`Self::human`], with 2 to 5 times the acceleration, as in a reconstruction of the recorded strokes without
+    /// smoothing, which includes the noise of pixels and times. The actual motion lies between the two.
     pub fn human_rough(
         screen_width_m: f64,
         screen_height_m: f64,
@@ -154,14 +154,14 @@ impl Stroke {
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
-    /// A motion through places at times that rise from 0 or later; `None` is a finger off the screen. Between two
-    /// places the finger goes straight and at constant speed.
+    /// Motion through places at ascending times from 0 on; `None` is a finger off the screen. Motion between two places
+    /// is straight, at constant speed.
     pub fn through(places: &[(f64, Option<Point>)]) -> Result<Self, StrokeError> {
         let row = |(t_s, place): &(f64, Option<Point>)| StrokeRow { t_s: *t_s, place: *place, normal_load_n: None };
         Self::through_rows(&places.iter().map(row).collect::<Vec<_>>())
     }
 
-    /// As [`Self::through`], with the normal loads that are known.
+    /// Like [`Self::through`], with normal loads where they are known.
     pub fn through_rows(rows: &[StrokeRow]) -> Result<Self, StrokeError> {
         let mut before_s = -f64::MIN_POSITIVE;
         for row in rows {
@@ -185,13 +185,13 @@ impl Stroke {
         Ok(Self { round_s: Some(round_s), ..self })
     }
 
-    /// Whether the stroke says with which load the finger presses.
+    /// Whether the stroke states normal loads.
     pub fn has_loads(&self) -> bool {
         matches!(&self.path, Path::Rows(rows) if rows.has_loads())
     }
 
-    /// Returns the normal load `t_s` seconds after the start of the stroke, in N; `None` if the stroke does not say it,
-    /// or while the finger is off the screen.
+    /// Returns the normal load `t_s` seconds after the start of the stroke, in N; `None` if the stroke does not state
+    /// it, or while the finger is off the screen.
     pub fn normal_load_n(&self, t_s: f64) -> Option<f64> {
         match &self.path {
             Path::Rows(rows) => rows.normal_load_n(self.in_round(t_s)?),

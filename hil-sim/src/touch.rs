@@ -1,5 +1,5 @@
-//! The touch source: a touchscreen that samples the finger periodically, and reports it with latency, jitter and
-//! noise, in steps, with some reports lost and others bunched.
+//! The touch source: a touchscreen that samples the finger periodically, and reports it with latency, jitter, noise and
+//! quantisation. Some reports are lost, and others bunched.
 
 use std::collections::VecDeque;
 
@@ -15,34 +15,35 @@ const JITTER_LIMIT: f64 = 3.0;
 /// Configuration of a touch source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchConfig {
-    /// Reports a second, above 0 and at most one a tick.
+    /// Reports per second, above 0 and at most one per tick.
     pub rate_hz: f64,
-    /// Time from the sample to its arrival at the board, as stated by the source, in seconds: 0 to 10.
+    /// Latency from sample to arrival at the board, as stated by the source, in seconds: 0 to 10.
     pub latency_s: f64,
-    /// Gaussian noise of the reported place in each axis, root mean square, in metres: 0 to 10.
+    /// Gaussian position noise in each axis, rms, in metres: 0 to 10.
     pub noise_rms_m: f64,
-    /// Standard deviation of the Gaussian jitter of the arrival, in seconds: 0 to 10. It is not reported to the board.
+    /// Standard deviation of the Gaussian jitter of the latency, in seconds: 0 to 10. It is not reported to the board.
     ///
-    /// Draws beyond three standard deviations are repeated, which leaves 98.7 % of the deviation. A report never
-    /// arrives before its sample, nor before the previous report.
+    /// Jitter is truncated at three standard deviations, which leaves 98.7 % of the deviation. A report never arrives
+    /// before its sample, nor before the previous report.
     pub jitter_rms_s: f64,
-    /// Part of the reports that never arrive, from 0 to 1: 4 to 28 % of the intervals between the reports of a
-    /// surface-haptic tablet were at least double (about 1,300 recorded strokes).
+    /// Fraction of lost reports, from 0 to 1: 4 to 28 % of the intervals between the reports of a surface-haptic tablet
+    /// were at least double (about 1,300 recorded strokes).
     pub lost_share: f64,
-    /// Part of the reports that wait for the next one and arrive a tick before it, from 0 to 1.
+    /// Fraction of reports delayed until one tick before the next report, from 0 to 1.
     pub bunched_share: f64,
-    /// Pauses a second in which every report is lost, from 0 to 10. They are evenly long up to `pause_max_s`.
+    /// Pauses per second in which every report is lost, from 0 to 10. Their duration is uniformly distributed up to
+    /// `pause_max_s`.
     pub pause_rate_hz: f64,
     /// Longest pause, in seconds: 0 to 10. The recorded strokes had gaps of up to 140 ms.
     pub pause_max_s: f64,
-    /// Steps of the reported place in each axis, in metres: 0 (none) to 10. The recorded strokes had 0.18 mm, the pixel
-    /// of the tablet.
+    /// Position resolution in each axis, in metres: 0 (unlimited) to 10. The recorded strokes had 0.18 mm, the pixel of
+    /// the tablet.
     pub step_m: f64,
 }
 
 impl TouchConfig {
-    /// An infrared frame or a fast touch panel that loses nothing: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms
-    /// of jitter.
+    /// An infrared frame or a fast touch panel without losses: 100 Hz, 10 ms of latency, 0.02 mm of noise, 0.5 ms of
+    /// jitter.
     pub const IDEAL: Self = Self {
         rate_hz: 100.0,
         latency_s: 10e-3,
@@ -56,8 +57,8 @@ impl TouchConfig {
     };
 
     /// The same source with the reports of the recorded strokes: one in eight is lost, one in thirty is bunched with
-    /// the next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms in ten seconds (gaps of up to
-    /// 140 ms with the losses around it), and steps of 0.18 mm.
+    /// the next (both within the 4 to 28 % of double intervals), a pause of up to 120 ms every ten seconds (gaps of up
+    /// to 140 ms including adjacent losses), and a resolution of 0.18 mm.
     pub const REALISTIC: Self = Self {
         lost_share: 0.12,
         bunched_share: 0.03,
@@ -67,9 +68,9 @@ impl TouchConfig {
         ..Self::IDEAL
     };
 
-    /// The bundled source of a name. A name is the number of reports a second: `100`, 10 ms late, which is
-    /// [`Self::REALISTIC`]; `200`, 5 ms late; `500`, 3 ms late. Their jitter is 5 % of the period, their losses, noise
-    /// and steps are the same.
+    /// The bundled source of a name, which is its number of reports per second: `100` with a latency of 10 ms, which is
+    /// [`Self::REALISTIC`]; `200` with 5 ms; `500` with 3 ms. Their jitter is 5 % of the period; losses, noise and
+    /// resolution are the same.
     pub fn bundled(name: &str) -> Option<Self> {
         let (_, rate_hz, latency_s) = BUNDLED.into_iter().find(|(bundled, ..)| *bundled == name)?;
         Some(Self { rate_hz, latency_s, jitter_rms_s: 0.05 / rate_hz, ..Self::REALISTIC })
@@ -80,14 +81,14 @@ impl TouchConfig {
         BUNDLED.into_iter().map(|(name, ..)| name)
     }
 
-    /// The same source, as it would be if every report arrived and places had no steps.
+    /// The same source without losses and with unlimited resolution.
     #[must_use]
     pub fn without_losses(self) -> Self {
         Self { lost_share: 0.0, bunched_share: 0.0, pause_rate_hz: 0.0, pause_max_s: 0.0, step_m: 0.0, ..self }
     }
 }
 
-/// Name, reports a second and latency in seconds of the bundled sources.
+/// Name, reports per second and latency in seconds of the bundled sources.
 const BUNDLED: [(&str, f64, f64); 3] = [("100", 100.0, 10e-3), ("200", 200.0, 5e-3), ("500", 500.0, 3e-3)];
 
 impl Default for TouchConfig {
@@ -97,7 +98,7 @@ impl Default for TouchConfig {
     }
 }
 
-/// What the path of the reports does to them.
+/// Losses of reports.
 #[derive(Clone, Debug)]
 struct Losses {
     random: Random,
@@ -109,7 +110,7 @@ struct Losses {
     pause_until_tick: f64,
 }
 
-/// What happens to a report.
+/// Outcome of a report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fate {
     Arrives,
@@ -130,7 +131,7 @@ impl Losses {
         })
     }
 
-    /// Draws the fate of the report of a sample. As many numbers are drawn for every sample.
+    /// Draws the outcome of a sample's report. The number of draws per sample is constant.
     fn draw(&mut self, tick: u64) -> Fate {
         let [lost, bunched, begins, length] = [(); 4].map(|()| self.random.uniform());
         let tick = tick as f64;
@@ -147,7 +148,7 @@ impl Losses {
     }
 }
 
-/// A report on its way to the board.
+/// A report under way to the board.
 #[derive(Clone, Copy, Debug)]
 struct PendingReport {
     arrival_tick: u64,
@@ -172,15 +173,15 @@ pub(crate) struct TouchSource {
     samples: u64,
     next_sample_tick: u64,
     finger_was_down: bool,
-    /// Reports in the order of their samples: each arrives before the next.
+    /// Reports in the order of their samples, in which they also arrive.
     under_way: VecDeque<PendingReport>,
-    /// A report that waits for the next one.
+    /// A report delayed until the next one.
     waiting: Option<Touch>,
     arrived: Option<Touch>,
 }
 
 impl TouchSource {
-    /// A touch source whose first sample comes at a random time within the first report period.
+    /// A touch source whose first sample is at a random time within the first report period.
     pub(crate) fn new(config: &TouchConfig, tick_hz: u32, seed: u64) -> Result<Self, OutOfRange> {
         let tick_hz = f64::from(tick_hz);
         let rate_hz = above_zero("touch rate_hz", config.rate_hz)?;
@@ -212,8 +213,8 @@ impl TouchSource {
         })
     }
 
-    /// A touch source that samples from `tick` on, in place of another: what the other had under way is lost. Its first
-    /// sample reports the finger, or that it was lifted.
+    /// A touch source that samples from `tick` on, in place of another one, whose pending reports are lost. Its first
+    /// sample reports the finger or its lift.
     pub(crate) fn from_tick(config: &TouchConfig, tick_hz: u32, seed: u64, tick: u64) -> Result<Self, OutOfRange> {
         let mut source = Self::new(config, tick_hz, seed)?;
         let passed = (tick as f64 - source.phase_ticks) / source.period_ticks;
@@ -264,7 +265,7 @@ impl TouchSource {
         self.finger_was_down = finger.is_some();
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
         match fate {
-            // A source that knows of a lift goes on saying so until it is heard.
+            // A lift is reported repeatedly until it arrives.
             Fate::Arrives => self.send(tick + delay_ticks, touch),
             _ if touch == Touch::Up => self.send(tick + delay_ticks, touch),
             Fate::WaitsForNext => self.waiting = Some(touch),
@@ -272,7 +273,7 @@ impl TouchSource {
         }
     }
 
-    /// Sends a report, after the one that waits for it.
+    /// Sends a report, after the delayed one.
     fn send(&mut self, arrival_tick: u64, touch: Touch) {
         if let Some(touch) = self.waiting.take() {
             self.under_way.push_back(PendingReport { arrival_tick, touch });

@@ -22,13 +22,13 @@ pub use options::{OwnFinger, WorldOptions};
 /// Configuration of a [`World`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldConfig {
-    /// Ticks a second, above 0.
+    /// Tick rate, Hz, above 0.
     pub tick_hz: u32,
     /// Voltage on the electrode that the board assumes for DAC code 32,767, in volts, peak. Above 0.
     pub full_scale_v_peak: f64,
     /// The amplifier between DAC and electrode.
     pub amplifier: AmplifierConfig,
-    /// The finger, beside its contact model.
+    /// The finger, besides its contact model.
     pub fingertip: FingertipConfig,
     /// The touch source.
     pub touch: TouchConfig,
@@ -37,8 +37,8 @@ pub struct WorldConfig {
 }
 
 impl WorldConfig {
-    /// The ideal plant: an amplifier whose only fault is its edges, a finger in steady sliding under a constant load,
-    /// and a touch source that loses nothing. 40 kHz and 200 V at full scale.
+    /// The ideal plant: an amplifier whose only flaw is its edges, a finger in steady sliding under a constant load,
+    /// and a touch source without losses. 40 kHz and 200 V at full scale.
     pub const IDEAL: Self = Self {
         tick_hz: 40_000,
         full_scale_v_peak: 200.0,
@@ -66,7 +66,7 @@ impl Default for WorldConfig {
     }
 }
 
-/// The result of a tick. All values but the mean square are those at the end of the tick.
+/// The result of a tick. All values but the mean square apply at the end of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Felt {
     /// The finger, if it is on the screen.
@@ -79,10 +79,10 @@ pub struct Felt {
     pub electric_friction_n: f64,
     /// Normal load of the finger, in newtons. Zero without a finger.
     pub normal_load_n: f64,
-    /// Part of the friction that is there because the load is not the one that the scene is meant for: friction of this
-    /// finger in steady sliding, without noise, less that under the load of the scene's profile, in newtons.
+    /// Friction error caused by a normal load other than the scene's: this finger's friction in steady sliding, without
+    /// noise, minus that under the load of the scene's profile, in newtons.
     pub load_mismatch_n: f64,
-    /// What the skin did in this tick.
+    /// Motion of the skin in this tick.
     pub slip: SlipStep,
     /// Voltage on the electrode.
     pub electrode_v: f64,
@@ -90,16 +90,15 @@ pub struct Felt {
     pub mean_square_v2: f64,
 }
 
-/// A reference under the same finger: the friction that an electric friction without any fault of the display would
-/// give, with the same load, noise and skin.
+/// The reference under the same finger: the friction with an ideal display, with the same load, noise and skin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReferenceFriction {
     electric_n: [f64; 2],
 }
 
 impl ReferenceFriction {
-    /// Follows a tick in which the finger felt `felt`, and the scene has `electric_friction_n` at its true place, in N.
-    /// Returns the total friction of the reference.
+    /// Advances by a tick in which the finger felt `felt`. `electric_friction_n` is the scene's at the finger's true
+    /// place, in N. Returns the total friction of the reference.
     pub fn follow(&mut self, felt: &Felt, electric_friction_n: f64) -> f64 {
         if felt.finger.is_none() {
             *self = Self::default();
@@ -112,8 +111,8 @@ impl ReferenceFriction {
 
 /// Amplifier, electrode, finger and touch source, in virtual time.
 ///
-/// At every tick the board reads [`sense`](Self::sense), and its output goes to [`apply`](Self::apply), which holds it
-/// for a tick. Until a scene is played the finger is the [example finger](crate::example_finger).
+/// In every tick, the board reads [`sense`](Self::sense), and its output is passed to [`apply`](Self::apply), which
+/// holds it for one tick. Until a scene is played, the finger is the [example finger](crate::example_finger).
 ///
 /// ```
 /// use frixel_hil_sim::{Point, Stroke, World, WorldConfig};
@@ -137,7 +136,7 @@ pub struct World {
     seed: u64,
     full_scale_v_peak: f64,
     amplifier: Amplifier,
-    /// The amplifier without the faults that are scheduled.
+    /// The amplifier without scheduled faults.
     healthy_amplifier: AmplifierConfig,
     faults: FaultSchedule,
     fingertip: Fingertip,
@@ -157,7 +156,7 @@ enum Motion {
     Lifted,
     /// The stroke, which started at this tick.
     Stroke { start_tick: u64 },
-    /// The caller, who has placed the finger here. It presses with the profile's load, or with this one in newtons.
+    /// The caller, who has placed the finger here. The normal load, in newtons, defaults to the profile's.
     Placed { finger: FingerState, normal_load_n: Option<f64> },
 }
 
@@ -201,12 +200,11 @@ impl World {
         }
     }
 
-    /// Replaces the touch source from now on. Reports that are under way are lost, and the new source reports the
-    /// finger at its first sample.
+    /// Replaces the touch source. Pending reports are lost, and the new source reports the finger at its first sample.
     ///
     /// # Errors
     ///
-    /// [`OutOfRange`] names a number of the configuration that no source has; the source before stays.
+    /// [`OutOfRange`] names an invalid number of the configuration; the previous source stays.
     pub fn set_touch_source(&mut self, config: &TouchConfig) -> Result<(), OutOfRange> {
         self.touch_source = TouchSource::from_tick(config, self.tick_hz, self.seed, self.tick)?;
         self.touch = None;
@@ -223,17 +221,16 @@ impl World {
         self.motion = Motion::Stroke { start_tick: self.tick };
     }
 
-    /// Places the finger, which ends a stroke. From the next tick on [`Self::apply`] uses this place, until the finger
-    /// is placed elsewhere or lifted.
+    /// Places the finger, and ends a stroke. From the next tick on, [`Self::apply`] uses this place until the finger is
+    /// placed elsewhere or lifted.
     ///
-    /// A caller who moves the finger calls this at every tick and states its speed: the world does not derive a speed
-    /// from two places.
+    /// To move the finger, call this in every tick with its speed: the world does not derive a speed from two places.
     pub fn place_finger(&mut self, finger: FingerState) {
         self.motion = Motion::Placed { finger, normal_load_n: None };
     }
 
-    /// As [`Self::place_finger`], and the finger presses with `normal_load_n`, in newtons, above 0, in place of the
-    /// load of its profile.
+    /// Like [`Self::place_finger`], with a normal load of `normal_load_n`, in newtons, above 0, in place of the
+    /// profile's.
     pub fn place_pressing_finger(&mut self, finger: FingerState, normal_load_n: f64) {
         self.motion = Motion::Placed { finger, normal_load_n: Some(normal_load_n) };
     }
@@ -243,11 +240,11 @@ impl World {
         self.motion = Motion::Lifted;
     }
 
-    /// Lets a fault be there for a range of ticks, from the current one on at the earliest.
+    /// Schedules a fault for a range of ticks, from the current one on at the earliest.
     ///
     /// # Errors
     ///
-    /// [`OutOfRange`] names a number of the fault that no amplifier has.
+    /// [`OutOfRange`] names an invalid number of the fault.
     pub fn schedule_fault(&mut self, ticks: Range<u64>, fault: WorldFault) -> Result<(), OutOfRange> {
         let ticks = ticks.start.max(self.tick)..ticks.end;
         self.faults.add(ticks, fault, self.healthy_amplifier)
@@ -286,7 +283,7 @@ impl World {
         (self.tick - start_tick) as f64 / f64::from(self.tick_hz)
     }
 
-    /// The load that the stroke or the caller says, in N.
+    /// The load stated by the stroke or the caller, in N.
     fn stated_load_n(&self) -> Option<f64> {
         match self.motion {
             Motion::Stroke { start_tick } => self.stroke.normal_load_n(self.stroke_s(start_tick)),
@@ -304,9 +301,9 @@ impl World {
         }
     }
 
-    /// What the amplifier's monitor shows at the end of the last tick, in V: for a rig that advances the world when the
-    /// board has latched the next code. In [`Self::sense`] it is a tick behind, because a board latches the code of a
-    /// tick at the end of that tick.
+    /// Monitor voltage at the end of the last tick, for a rig that advances the world when the board has latched the
+    /// next code. In [`Self::sense`] it is one tick behind, since a board latches the code of a tick at the end of that
+    /// tick.
     #[cfg(unix)]
     pub(crate) fn monitor_now_v(&self) -> f64 {
         self.amplifier.monitor_now_v()
@@ -317,7 +314,7 @@ impl World {
         self.touch
     }
 
-    /// Whether the arm switch is welded: closed, whatever the person at it does.
+    /// Whether the arm switch is welded closed.
     pub(crate) fn is_switch_welded(&self) -> bool {
         self.faults.has(self.tick, WorldFault::SwitchWelded)
     }

@@ -1,4 +1,4 @@
-//! What a simulated amplifier deviates from an ideal one by.
+//! Deviations of a simulated amplifier from an ideal one.
 
 use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
@@ -16,28 +16,27 @@ pub struct AmplifierConfig {
     pub output_time_constant_s: f64,
     /// Time constant of the electrode behind the series resistor, in seconds: 0 (no lag) to 10.
     pub electrode_time_constant_s: f64,
-    /// Voltage that is added to the output while the amplifier is enabled, in volts: -10 to 10.
+    /// Offset voltage of the output while the amplifier is enabled, in volts: -10 to 10.
     pub offset_v: f64,
-    /// Fastest change of the electrode, in V/s, above 0: the amplifier's current limit over the capacitance that it
-    /// charges.
+    /// Slew limit of the electrode, in V/s, above 0: the amplifier's current limit over the load capacitance.
     pub slew_v_per_s: f64,
-    /// Time from the rise of the enable until the output follows the DAC, in seconds: 0 to 10. In whole ticks, rounded
-    /// up.
+    /// Time from the rise of the enable until the output follows the DAC, in seconds: 0 to 10, rounded up to whole
+    /// ticks.
     pub turn_on_s: f64,
-    /// Time from the fall of the enable until the output begins to [decay](Self::decay), in seconds: 0 to 10. The
-    /// output stays where it is meanwhile. In whole ticks, rounded up.
+    /// Time from the fall of the enable until the output begins to [decay](Self::decay), in seconds: 0 to 10, rounded
+    /// up to whole ticks. The output is constant meanwhile.
     pub turn_off_delay_s: f64,
-    /// How the output goes to zero.
+    /// Decay of the output.
     pub decay: Decay,
-    /// Voltage that the monitor shows over the voltage at the output: 1 for an ideal monitor, 0 for a dead one. Finite.
+    /// Monitor voltage over output voltage: 1 for an ideal monitor, 0 for a dead one. Finite.
     pub monitor_gain: f64,
 }
 
-/// How the output of a disabled amplifier goes to zero.
+/// Decay of a disabled amplifier's output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Decay {
-    /// The output stage lowers its output at a constant rate, in V/s. With 0 it stays, and with less it rises to
-    /// saturation: an output stage that is broken.
+    /// The output falls at a constant rate, in V/s. At 0 it stays, and at a negative rate it rises to saturation, as
+    /// with a broken output stage.
     Linear {
         /// Rate in V/s, finite.
         v_per_s: f64,
@@ -47,8 +46,8 @@ pub enum Decay {
         /// In seconds: 0 (at once) to 10.
         time_constant_s: f64,
     },
-    /// The output stage lets go: output and electrode are one node, which discharges through bleed resistor and finger
-    /// with this time constant: 5.3 ms for 10 megohms and 0.53 nF.
+    /// The output becomes high-impedance: output and electrode form one node, which discharges through bleed resistor
+    /// and finger with this time constant, 5.3 ms for 10 megohms and 0.53 nF.
     HighImpedance {
         /// In seconds: 0 (at once) to 10.
         time_constant_s: f64,
@@ -56,9 +55,9 @@ pub enum Decay {
 }
 
 impl AmplifierConfig {
-    /// Exact gain, no offset, no current limit, an electrode with a time constant of 20 us that contains the
-    /// amplifier's own, and 250 V: the simulated board's full scale, above any voltage that it allows. It switches on
-    /// and off at once, as that board says of its amplifier.
+    /// Exact gain, no offset, no current limit, an electrode time constant of 20 us that includes the amplifier's own,
+    /// and 250 V: the simulated board's full scale, above any voltage that it allows. It switches on and off at once,
+    /// as that board assumes.
     pub const IDEAL: Self = Self {
         gain: 1.0,
         saturation_v_peak: 250.0,
@@ -72,13 +71,13 @@ impl AmplifierConfig {
         monitor_gain: 1.0,
     };
 
-    /// An amplifier as `docs/hardware.md` demands it: an offset of 0.5 V (assumed: 25 mV at the input of a gain of 20),
-    /// and a current limit of 5 mA into the simulated board's worst electrode, 0.53 nF. It switches at once, like
-    /// [`Self::IDEAL`].
+    /// An amplifier as required by `docs/hardware.md`: an offset of 0.5 V (assumed: 25 mV at the input of a gain of
+    /// 20), and a current limit of 5 mA into the simulated board's worst-case electrode, 0.53 nF. It switches at once,
+    /// like [`Self::IDEAL`].
     pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 
-    /// [`Self::IDEAL`] with the lags that a board says of its amplifier and of its electrode, the latter as its series
-    /// resistance has it. A board without one says both as one lag of the electrode.
+    /// [`Self::IDEAL`] with the lags that a board states for its amplifier and its electrode, the latter from its
+    /// series resistance. A board without series resistance states both as one lag of the electrode.
     pub fn of(board: &Board) -> Self {
         let BoardLimits { series_resistance_ohm, electrode_capacitance_max_f, edge_time_constant_s, .. } = board.limits;
         let electrode_s = series_resistance_ohm * electrode_capacitance_max_f;

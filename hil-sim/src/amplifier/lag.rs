@@ -2,11 +2,11 @@
 
 use super::Output;
 
-/// Below this distance from its target, in volts, a voltage is set to the target. Otherwise the decay would reach
-/// subnormal numbers, which are slow and never become zero.
+/// Distance in volts below which a voltage is set to its target. Otherwise the decay would reach subnormal numbers,
+/// which are slow and never become zero.
 const SETTLED_V: f64 = 1e-9;
 
-/// `e^(-t/tau)` over a time: what is left of a distance at its end, its mean, and its variance.
+/// Exponential decay `e^(-t/tau)` over a time: its remainder at the end, its mean, and its variance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lag {
     pub(super) remainder: f64,
@@ -36,7 +36,7 @@ pub(super) struct Voltages {
 pub(super) struct Cascade {
     output: Lag,
     electrode: Lag,
-    /// Part of the output's distance that the electrode's has of the output's exponential.
+    /// Weight of the output's exponential in the electrode's distance, relative to the output's distance.
     coupling: f64,
     /// Covariance of the two exponentials over a tick.
     covariance: f64,
@@ -44,7 +44,7 @@ pub(super) struct Cascade {
 
 impl Cascade {
     pub(super) fn new(output_tau_s: f64, electrode_tau_s: f64, tick_period_s: f64) -> Self {
-        // Two equal time constants have no partial fractions: a ten-thousandth beside is near enough.
+        // Equal time constants have no partial fractions; a relative difference of 1e-4 is accurate enough.
         let is_equal = (output_tau_s - electrode_tau_s).abs() < 1e-4 * electrode_tau_s;
         let output_tau_s = if is_equal { electrode_tau_s * (1.0 + 1e-4) } else { output_tau_s };
         let (output, electrode) = (Lag::new(output_tau_s, tick_period_s), Lag::new(electrode_tau_s, tick_period_s));

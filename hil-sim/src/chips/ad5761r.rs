@@ -18,12 +18,12 @@ const BYTE_NS: u64 = 1_500;
 /// Nanoseconds after a software reset in which the chip ignores frames. Assumed: the data sheet gives no time.
 const RESET_NS: u64 = 10_000;
 
-/// Clocks of a frame. Of more, the last 24 count; with fewer, the chip ignores the frame.
+/// Clocks per frame. If there are more, the last 24 count; with fewer, the chip ignores the frame.
 const FRAME_CLOCKS: u32 = 24;
 /// Nanoseconds in which software sets a pin: a few instructions at 16 MHz, the processor's clock after a reset.
 const PIN_NS: u64 = 500;
-/// Nanoseconds in which the output settles. The data sheet's first page says 7.5 us, typical, for selected ranges; its
-/// table with the longest time is unread, so this is twice that.
+/// Settling time of the output, in nanoseconds. The data sheet's first page states 7.5 us, typical, for selected
+/// ranges; the table with the maximum is unread, so this is twice that.
 const SETTLING_NS: u64 = 15_000;
 
 const SHORT_CIRCUIT: u16 = 1 << 12;
@@ -39,20 +39,20 @@ struct Chip {
     clear_is_high: bool,
     sync_is_high: bool,
     reset_is_high: bool,
-    /// The last bits that were shifted in while SYNC was low, and their number.
+    /// The last bits shifted in while SYNC was low, and their number.
     shifted_in: u32,
     clocks: u32,
-    /// The control register, status bits included.
+    /// The control register, including status bits.
     control: u16,
     input: u16,
     output: u16,
-    /// The output is clamped to ground, from a reset until the first write to the control register.
+    /// Whether the output is clamped to ground, from a reset until the first write to the control register.
     is_clamped: bool,
     /// The bytes that the chip shifts out with the next frame.
     shifting_out: [u8; 3],
     now_ns: u64,
     ready_at_ns: u64,
-    /// When the output last began to change.
+    /// Time at which the output last began to change.
     changed_at_ns: u64,
 }
 
@@ -114,12 +114,12 @@ impl Ad5761rChip {
         ChipSpi(Rc::clone(&self.0))
     }
 
-    /// SYNC, as a pin that software sets. Each change takes some of the chip's virtual time.
+    /// SYNC, as a pin set by software. Each change advances the chip's virtual time.
     pub fn sync_pin(&self) -> ChipPin {
         ChipPin { chip: Rc::clone(&self.0), input: Input::Sync }
     }
 
-    /// CLEAR, likewise.
+    /// CLEAR, as a pin set by software.
     pub fn clear_pin(&self) -> ChipPin {
         ChipPin { chip: Rc::clone(&self.0), input: Input::Clear }
     }
@@ -136,7 +136,7 @@ impl Ad5761rChip {
         chip.reset();
     }
 
-    /// Simulates a dip of the supply that the chip detects and that leaves its registers unchanged.
+    /// Simulates a supply dip that the chip detects and that leaves its registers unchanged.
     pub fn brown_out(&self) {
         self.0.borrow_mut().control |= BROWN_OUT;
     }
@@ -151,8 +151,8 @@ impl Ad5761rChip {
         self.0.borrow_mut().has_sdo = connected;
     }
 
-    /// Sets the level of CLEAR. Its falling edge, and only the edge, sets the DAC register to the value that the
-    /// control register selects.
+    /// Sets the level of CLEAR. Only its falling edge sets the DAC register to the value selected by the control
+    /// register.
     pub fn set_clear(&self, high: bool) {
         self.0.borrow_mut().set(Input::Clear, high);
     }
@@ -162,18 +162,18 @@ impl Ad5761rChip {
         self.0.borrow_mut().set(Input::Sync, high);
     }
 
-    /// Sets the level of RESET: while it is low, the registers have their values after power-on and the output is
-    /// clamped to ground, whatever the other inputs do.
+    /// Sets the level of RESET. While it is low, the registers have their power-on values and the output is clamped to
+    /// ground, regardless of the other inputs.
     pub fn set_reset(&self, high: bool) {
         self.0.borrow_mut().set(Input::Reset, high);
     }
 
-    /// A falling edge of SCLK, at which the chip takes `bit` from SDI.
+    /// A falling edge of SCLK, at which the chip samples `bit` from SDI.
     pub fn clock(&self, bit: bool) {
         let _ = self.0.borrow_mut().clock(bit);
     }
 
-    /// The levels of SDO during the next frame, 24 bits, the first one at the top. They change when a frame ends.
+    /// The levels of SDO during the next frame, 24 bits, most significant first. They change when a frame ends.
     #[must_use]
     pub fn shifting_out(&self) -> u32 {
         let chip = self.0.borrow();
@@ -191,7 +191,7 @@ impl Ad5761rChip {
         self.0.borrow().now_ns
     }
 
-    /// When the output has settled after its last change, in nanoseconds of the chip's virtual time.
+    /// Time at which the output has settled after its last change, in nanoseconds of the chip's virtual time.
     #[must_use]
     pub fn settled_at_ns(&self) -> u64 {
         self.0.borrow().changed_at_ns + SETTLING_NS

@@ -1,5 +1,5 @@
-//! An I2C bus whose target was left in the middle of a transfer by a reset of the controller (NXP UM10204, "Byte
-//! format", "Acknowledge (ACK) and Not Acknowledge (NACK)", unread).
+//! An I2C bus whose target was interrupted in a transfer by a reset of the controller (NXP UM10204, "Byte format",
+//! "Acknowledge (ACK) and Not Acknowledge (NACK)", unread).
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -10,14 +10,14 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 /// Number of the clock that carries the acknowledgement.
 const ACKNOWLEDGE: u32 = 8;
 
-/// What the target was doing.
+/// The interrupted transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transfer {
-    /// It sends this byte, again and again, as long as it is acknowledged.
+    /// The target sends this byte repeatedly, as long as it is acknowledged.
     Sends(u8),
-    /// It receives bytes and acknowledges each.
+    /// The target receives bytes and acknowledges each.
     Receives,
-    /// Nothing: it waits for a START condition.
+    /// None: the target waits for a START condition.
     Idle,
 }
 
@@ -31,7 +31,7 @@ struct Bus {
     pulses: u32,
 }
 
-/// A bus with one target, and a controller that holds neither line.
+/// A bus with one target, and a controller that releases both lines.
 #[derive(Clone, Debug)]
 pub struct HeldBus(Rc<RefCell<Bus>>);
 
@@ -44,7 +44,7 @@ pub struct SclPin(Rc<RefCell<Bus>>);
 pub struct SdaPin(Rc<RefCell<Bus>>);
 
 impl HeldBus {
-    /// A bus whose target stands in clock number `clock` (0 to 8) of a byte, with SCL high.
+    /// A bus whose target is at clock `clock` (0 to 8) of a byte, with SCL high.
     #[must_use]
     pub fn new(transfer: Transfer, clock: u32) -> Self {
         let bus = Bus { transfer, clock, scl_is_high: true, is_shorted: false, pulses: 0 };
@@ -68,8 +68,8 @@ impl HeldBus {
         SdaPin(Rc::clone(&self.0))
     }
 
-    /// The controller begins a transfer: a START condition, which resets the target. Returns whether it can, which
-    /// needs both lines high.
+    /// Issues a START condition, which resets the target. Returns whether this was possible, which requires both lines
+    /// to be high.
     #[must_use]
     pub fn start(&self) -> bool {
         let mut bus = self.0.borrow_mut();
@@ -100,7 +100,7 @@ impl Bus {
     fn set_scl(&mut self, high: bool) {
         if high && !self.scl_is_high {
             self.pulses += 1;
-            // Nobody acknowledges what the target has sent, so that it stops.
+            // The missing acknowledgement stops a sending target.
             if matches!(self.transfer, Transfer::Sends(_)) && self.clock == ACKNOWLEDGE && self.sda_is_high() {
                 self.transfer = Transfer::Idle;
             }

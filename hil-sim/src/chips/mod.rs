@@ -1,9 +1,9 @@
-//! Models of the chips on a driver board at the level of their registers and messages, behind the `embedded-hal` traits
-//! that the real buses implement: the drivers of `frixel-drivers` run against them.
+//! Models of the chips on a driver board at register and message level, behind the `embedded-hal` traits of real buses,
+//! so that the drivers of `frixel-drivers` run against them.
 //!
-//! They are written from the data sheets, not from the drivers. Each model has two sides: the bus side
-//! ([`Ad5761rChip::spi`], [`ZForceModule::bus`], ...), which a driver owns, and the model itself, with which a test
-//! supplies, breaks and reads the chip.
+//! They are written from the data sheets, not from the drivers. Each model has two sides: the bus
+//! ([`Ad5761rChip::spi`], [`ZForceModule::bus`], ...), which a driver owns, and the model itself, through which a test
+//! powers, breaks and inspects the chip.
 
 mod ad5761r;
 mod held_bus;

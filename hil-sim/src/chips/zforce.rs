@@ -25,9 +25,9 @@ struct Module {
     is_connected: bool,
     is_enabled: bool,
     frequency_hz: Option<u16>,
-    /// Messages that wait to be read, each with its two bytes in front. The first may have been read in part.
+    /// Unread messages, each preceded by its two bytes. The first may be partly read.
     waiting: VecDeque<VecDeque<u8>>,
-    /// Number of polls that each transfer takes.
+    /// Number of polls per transfer.
     transfer_polls: u32,
     corrupted_lengths: u32,
 }
@@ -44,7 +44,7 @@ pub struct ModuleBus(Rc<RefCell<Module>>);
 #[derive(Debug)]
 pub struct DataReadyPin(Rc<RefCell<Module>>);
 
-/// A delay that takes one poll for each millisecond.
+/// A delay that takes one poll per millisecond.
 #[derive(Debug)]
 pub struct PolledDelay;
 
@@ -97,7 +97,7 @@ impl ZForceModule {
         DataReadyPin(Rc::clone(&self.0))
     }
 
-    /// Discards the settings and the waiting messages, as a short dip of the supply does.
+    /// Discards the settings and the unread messages, as a short supply dip does.
     pub fn forget_settings(&self) {
         let mut module = self.0.borrow_mut();
         module.is_enabled = false;
@@ -105,7 +105,7 @@ impl ZForceModule {
         module.waiting.clear();
     }
 
-    /// Restarts the module, which forgets its settings and announces that it has started.
+    /// Restarts the module, which loses its settings and announces its start.
     pub fn restart(&self) {
         self.forget_settings();
         self.0.borrow_mut().push(&[NOTIFICATION, 0x09, 0x40, 0x02, 0x00, 0x00, 0x63, 0x03, 0x80, 0x01, 0x00]);
@@ -116,7 +116,7 @@ impl ZForceModule {
         self.0.borrow_mut().is_connected = connected;
     }
 
-    /// Number of messages that wait to be read, the first of them perhaps in part.
+    /// Number of unread messages, of which the first may be partly read.
     #[must_use]
     pub fn waiting(&self) -> usize {
         self.0.borrow().waiting.len()
@@ -139,7 +139,7 @@ impl ZForceModule {
         self.0.borrow().frequency_hz
     }
 
-    /// Whether the host has enabled its reports since it has started.
+    /// Whether the host has enabled reports since the module started.
     #[must_use]
     pub fn is_enabled(&self) -> bool {
         self.0.borrow().is_enabled

@@ -5,19 +5,19 @@ use std::io;
 use frixel_wire::fault::Fault;
 use thiserror::Error;
 
-/// Why there is no emulated board, or why it has stopped.
+/// Why an emulated board is unavailable, or has stopped.
 #[derive(Debug, Error)]
 pub enum EmulatorError {
     /// The emulator is not installed.
     #[error("the emulator is not installed: `apt-get install qemu-system-arm`")]
     NoEmulator,
-    /// The program that runs the emulator of the Pico is not installed.
+    /// Node, which runs the emulator of the Pico, is not installed.
     #[error("the Pico's emulator runs on node, which is not installed: `apt-get install nodejs npm`")]
     NoNode,
-    /// The program that fetches the emulator of the Pico is not installed.
+    /// npm, which fetches the emulator of the Pico, is not installed.
     #[error("the Pico's emulator rp2040js is fetched by npm, which is not installed: `apt-get install npm`")]
     NoNpm,
-    /// The packages that run the image of the Pico could not be installed.
+    /// The packages that run the Pico's image could not be installed.
     #[error("the emulator rp2040js could not be installed by `npm ci` in {folder}:\n{output}")]
     NoPackages {
         /// The folder of the programs that use it.
@@ -31,25 +31,25 @@ pub enum EmulatorError {
         /// The target's name.
         target: &'static str,
     },
-    /// There is no compiler.
+    /// Rust is not installed.
     #[error(
-        "the emulated board's image is not in the folder `images` beside this program, and takes Rust to build, which is not \
-         installed: `curl https://sh.rustup.rs -sSf | sh`"
+        "the emulated board's image is not in the folder `images` beside this program, and building it needs Rust, \
+         which is not installed: `curl https://sh.rustup.rs -sSf | sh`"
     )]
     NoCompiler,
-    /// The board's sources are not there.
+    /// The board's sources are missing.
     #[error(
         "the emulated board's image is not in the folder `images` beside this program, and frixel's sources to build it \
          are not here: run this in a checkout of frixel, or set FRIXEL_CHECKOUT to the folder of one"
     )]
     NoSources,
-    /// The environment names a folder that is no checkout.
+    /// `FRIXEL_CHECKOUT` is not a checkout.
     #[error(
-        "`FRIXEL_CHECKOUT={folder}` names no checkout of frixel, because {missing}: set it to the folder of one, or unset \
-         it"
+        "`FRIXEL_CHECKOUT={folder}` is not a checkout of frixel, because {missing}: set it to the folder of one, \
+         or unset it"
     )]
     NotACheckout {
-        /// The folder, as the environment has it.
+        /// The folder, as in the environment.
         folder: String,
         /// What is missing.
         missing: String,
@@ -60,7 +60,7 @@ pub enum EmulatorError {
         /// The compiler's output.
         output: String,
     },
-    /// The operating system refuses something.
+    /// An operation of the operating system failed.
     #[error("emulated board: {action}: {reason}")]
     System {
         /// The action that failed.
@@ -68,7 +68,7 @@ pub enum EmulatorError {
         /// The operating system's error.
         reason: io::Error,
     },
-    /// The emulated board would not start with the limits that it is to have.
+    /// The emulated board cannot be given its limits.
     #[error(
         "the emulated board cannot have the limits of `Board::PICO`, which are in its flash before it starts: {reason}"
     )]
@@ -82,27 +82,27 @@ pub enum EmulatorError {
         /// The emulator's output.
         output: String,
     },
-    /// The emulator has made no serial port.
-    #[error("the emulator does not say where its serial port is:\n{output}")]
+    /// The emulator has not reported its serial port.
+    #[error("the emulator has not reported its serial port:\n{output}")]
     NoSerialPort {
         /// The emulator's output.
         output: String,
     },
-    /// The board did not finish in time.
-    #[error("the emulated board owes {what} since {seconds} s: is its image stuck, or the machine overloaded?")]
+    /// The board missed a deadline.
+    #[error("the emulated board has not completed {what} for {seconds} s: is the image stuck, or the machine busy?")]
     Silent {
         /// The missing result.
         what: &'static str,
         /// Wall time since the request.
         seconds: u64,
     },
-    /// The firmware ended with a fault and started again, where it must not.
-    #[error("the emulated board ended and started again: {fault} (detail {detail:#x})")]
+    /// The firmware restarted unexpectedly after a fault.
+    #[error("the firmware of the emulated board has restarted: {fault} (detail {detail:#x})")]
     Restarted {
         /// The fault.
         fault: Fault,
-        /// The fault's detail: of a hard fault the program counter, of a stack overflow the address below the stack, of
-        /// a panic the line.
+        /// The fault's detail: the program counter for a hard fault, the address below the stack for a stack overflow,
+        /// the line for a panic.
         detail: u32,
     },
     /// The simulator was too slow to follow the board's output.

@@ -1,4 +1,4 @@
-//! The programs that run the Pico's image: those that come with this program, or those of the checkout.
+//! The programs that run the Pico's image, shipped with this program or found in the checkout.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -15,10 +15,10 @@ const BESIDE: &str = "pico-rig";
 const SOURCES: &str = "hil-sim/pico";
 const MAIN: &str = "main.mjs";
 
-/// One installation at a time.
+/// Serialises installations.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// The program that node runs. In a checkout, this first installs the emulator, unless it is there.
+/// The program that node runs. In a checkout, this first installs the emulator if necessary.
 pub(super) fn find() -> Result<PathBuf, EmulatorError> {
     if let Some(folder) = beside_program(BESIDE) {
         return Ok(folder.join(MAIN));
@@ -28,10 +28,10 @@ pub(super) fn find() -> Result<PathBuf, EmulatorError> {
     Ok(folder.join(MAIN))
 }
 
-/// Installs the packages of the lock file, unless they are there.
+/// Installs the packages of the lock file, if necessary.
 fn install(folder: &Path) -> Result<(), EmulatorError> {
     let _turn = TURN.lock();
-    // npm writes this file last, so it is newer than the lock file that it was made from.
+    // npm writes this file last, so it is newer than its lock file.
     let modified = |name: &str| fs::metadata(folder.join(name)).and_then(|metadata| metadata.modified()).ok();
     if modified("node_modules/.package-lock.json") >= modified("package-lock.json") {
         return Ok(());

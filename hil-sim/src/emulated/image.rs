@@ -1,4 +1,4 @@
-//! The board's image: the one that comes with the program, or building it, and the tools that are required.
+//! The board's image, shipped with the program or built, and the required tools.
 
 use std::env;
 use std::io::{self, ErrorKind};
@@ -12,22 +12,22 @@ pub(super) const EMULATOR: &str = "qemu-system-arm";
 /// Name of the program that runs the emulator of [`EmulatedBoard::Pico`].
 pub(super) const NODE: &str = "node";
 
-/// Environment variable with the checkout to build from, if it is not the one around the working directory.
+/// Environment variable with the checkout to build from, in place of the one around the working directory.
 const CHECKOUT: &str = "FRIXEL_CHECKOUT";
 
-/// Folder of the images that come with a program, beside it.
+/// Folder of the images shipped with a program, beside it.
 pub(super) const IMAGES: &str = "images";
 
 /// A board that runs in an emulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmulatedBoard {
-    /// A Cortex-M4F with a firmware of its own.
+    /// A Cortex-M4F with its own firmware.
     Mps2An386,
-    /// A Cortex-M33 with an FPU, as the RP2350 has them, with the same firmware, for [`replay`](super::replay) alone.
+    /// A Cortex-M33 with an FPU, as in the RP2350, with the same firmware, only for [`replay`](super::replay).
     Mps2An505,
-    /// A Raspberry Pi Pico, with the image that is flashed.
+    /// A Raspberry Pi Pico, with the unmodified image.
     Pico,
-    /// The same, with an image that takes the finger's place from an optical frame, and has few kinds of layers.
+    /// A Raspberry Pi Pico with an image for an optical touch frame, and few kinds of layers.
     PicoWithFrame,
 }
 
@@ -77,8 +77,8 @@ impl EmulatedBoard {
         }
     }
 
-    /// The folder of what cargo makes of it, from that of its firmware: one that all images share, but for the second
-    /// one of a name.
+    /// The target folder relative to that of its firmware. It is shared by all images, except for the second image of a
+    /// name.
     fn target_folder(self) -> &'static str {
         match self {
             Self::Mps2An386 | Self::Mps2An505 | Self::Pico => "../target",
@@ -99,7 +99,8 @@ impl EmulatedBoard {
         }
     }
 
-    /// Returns an error that names what is missing to build and run this board. It does not check for the sources.
+    /// Returns an error that names the missing tool for building and running this board. Does not check for the
+    /// sources.
     pub fn available(self) -> Result<(), EmulatorError> {
         self.emulator()?;
         let output = Command::new("rustc")
@@ -120,8 +121,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// The image `images/BOARD.elf` beside this program, if it has come with one (`cargo xtask dist`), or else as
-    /// [`Self::build`], which is what happens where the environment has `FRIXEL_CHECKOUT`.
+    /// Returns the image `images/BOARD.elf` beside this program, if it was shipped with one (`cargo xtask dist`).
+    /// Otherwise, or if `FRIXEL_CHECKOUT` is set, builds it as [`Self::build`] does.
     pub fn find(board: EmulatedBoard) -> Result<Self, EmulatorError> {
         match beside_program(&format!("board-{}.elf", board.machine())) {
             Some(path) => board.emulator().map(|()| Self { board, path }),
@@ -131,8 +132,8 @@ impl Image {
 
     /// Builds the image of an emulated board if it is not up to date.
     ///
-    /// It is built from the checkout that the environment's `FRIXEL_CHECKOUT` names, or else the one around the working
-    /// directory, or else the one that this program was built in.
+    /// The sources are those of the checkout named by `FRIXEL_CHECKOUT`, else around the working directory, else where
+    /// this program was built.
     pub fn build(board: EmulatedBoard) -> Result<Self, EmulatorError> {
         board.available()?;
         let folder = source_folder(&format!("firmware/{}", board.name()))?;
@@ -162,7 +163,7 @@ impl Image {
     }
 }
 
-/// What has come with this program in its folder of images, unless the environment names a checkout.
+/// A file shipped in this program's folder of images, unless the environment names a checkout.
 pub(super) fn beside_program(name: &str) -> Option<PathBuf> {
     beside(&env::current_exe().unwrap_or_default(), name).filter(|_| env::var_os(CHECKOUT).is_none())
 }
@@ -176,8 +177,8 @@ fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
     if error.kind() == ErrorKind::NotFound { EmulatorError::NoCompiler } else { EmulatorError::system(action)(error) }
 }
 
-/// A folder in the checkout of a build for development, whose tests run elsewhere. What is handed on names no folder of
-/// the machine that built it.
+/// A folder in the checkout of a development build, whose tests run elsewhere. A release contains no path of the
+/// machine that built it.
 const BUILT_IN: Option<&str> = if cfg!(debug_assertions) { Some(env!("CARGO_MANIFEST_DIR")) } else { None };
 
 /// A folder of the sources.

@@ -18,13 +18,13 @@ use crate::{OutOfRange, RigTick, World, WorldFault};
 use follower::{ControlFlags, Follower};
 use serial::Serial;
 
-/// An instruction takes 8 ns of virtual time, which resembles a Cortex-M4F near 170 MHz. Virtual time waits for wall
-/// time when it is ahead.
+/// An instruction takes 8 ns of virtual time, similar to a Cortex-M4F at 170 MHz. Virtual time waits if it is ahead of
+/// wall time.
 const ARGUMENTS: [&str; 4] = ["-icount", "shift=3,align=on", "-serial", "pty"];
 
 /// Wall time between two checks of the board's output.
 const POLL_PERIOD: Duration = Duration::from_millis(1);
-/// Wall time that the emulator may take to start, on a machine that is busy with other things.
+/// Wall time allowed for starting the emulator on a busy machine.
 const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Faults that can be injected into an emulated board.
@@ -42,10 +42,10 @@ pub enum InjectedFault {
     Reset,
 }
 
-/// An emulated board with a host's end of its serial line, and its world.
+/// An emulated board with the host's end of its serial line, and its world.
 ///
-/// The board ticks on its own timer in virtual time, which is never ahead of wall time and may fall behind it. The
-/// world follows the board's output and sends touch reports back within some milliseconds, each with its age then. The
+/// The board ticks on its own timer in virtual time, which never runs ahead of wall time and may fall behind it. The
+/// world follows the board's output, and sends touch reports within a few milliseconds, each with its current age. The
 /// amplifier's monitor is simulated on the board itself.
 #[derive(Debug)]
 pub struct LinkBoard {
@@ -57,7 +57,7 @@ pub struct LinkBoard {
 }
 
 impl LinkBoard {
-    /// Starts the board in a world whose finger is up until [`Self::start_stroke`].
+    /// Starts the board in a world whose finger stays up until [`Self::start_stroke`].
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut machine = Machine::start(image, layout::MODE_LINK, &ARGUMENTS)?;
         wait_for(&mut machine, layout::TICK, "its first tick")?;
@@ -66,7 +66,7 @@ impl LinkBoard {
         let serial_path = serial_path.ok_or(EmulatorError::NoSerialPort { output })?;
         let serial = Serial::open(&serial_path)?;
         serial.write_zero()?;
-        wait_for(&mut machine, layout::RECEIVED_BYTES, "to take a byte from its serial port")?;
+        wait_for(&mut machine, layout::RECEIVED_BYTES, "reading a byte from its serial port")?;
         let flags = Arc::new(ControlFlags::default());
         let memory = machine.memory.try_clone()?;
         let (sender, records) = mpsc::channel();
@@ -80,8 +80,7 @@ impl LinkBoard {
         &self.serial_path
     }
 
-    /// Takes the ticks that the world has followed since the last call, oldest first. They queue without bound until
-    /// then.
+    /// Takes the ticks processed by the world since the last call, oldest first. They queue without bound until then.
     pub fn records(&self) -> impl Iterator<Item = RigTick> {
         self.records.try_iter()
     }
@@ -91,7 +90,7 @@ impl LinkBoard {
         self.flags.stroke.store(true, Ordering::Release);
     }
 
-    /// Causes a fault within some milliseconds, for so many ticks.
+    /// Causes a fault within a few milliseconds, for this many ticks.
     pub fn cause(&self, fault: WorldFault, ticks: u64) -> Result<(), OutOfRange> {
         fault.check()?;
         self.flags.cause(fault, ticks);
@@ -114,7 +113,7 @@ impl LinkBoard {
         self.machine.memory.get(layout::DRIVES_WRITTEN)
     }
 
-    /// Opens or closes a host's connection. While it is open, the board's clock stands still at the tick of
+    /// Opens or closes a host's connection. While it is open, the board's clock pauses at the tick of
     /// [`Self::host_answers_to`], for at most 10 s without another answer.
     pub fn set_host_open(&self, is_open: bool) -> Result<(), EmulatorError> {
         self.machine.memory.set(layout::HOST_OPEN, u32::from(is_open))
@@ -131,7 +130,7 @@ impl LinkBoard {
         self.machine.memory.get(layout::RECEIVED_BYTES)
     }
 
-    /// Returns how often the firmware has started.
+    /// Returns the number of firmware starts.
     pub fn starts(&self) -> Result<u32, EmulatorError> {
         self.machine.memory.get(layout::STARTS)
     }

@@ -30,37 +30,37 @@ use process::Process;
 use protocol::{ARM, Ended, READY, Ran, Request};
 pub use protocol::{Stamped, StartCause, WireEvent};
 
-/// Sequence number of the touch source's requests: no host waits for an answer to it.
+/// Sequence number of the touch source's requests, for which no host awaits an answer.
 const TOUCH_SEQUENCE: u16 = 0;
-/// When the person presses the arm switch and holds it, after the board was switched on.
+/// Time from power-on until the person presses and holds the arm switch.
 const PRESSED_AT: Duration = Duration::from_millis(10);
-/// How far a frame may be from the boundary of a tick to mark it, as a fraction of the period. A frame that the driver
-/// sends between two ticks is none.
+/// Largest distance of a frame from a tick boundary that marks it, as a fraction of the period. Frames sent by the
+/// driver between ticks are ignored.
 const BOUNDARY_TOLERANCE: f64 = 0.2;
-/// Codes of the ADC a volt at the amplifier's output, and at 0 V: 1.5 V at the pin for 200 V, of 3.3 V in 4,096 codes,
-/// around the middle (`docs/hardware.md`).
+/// ADC codes per volt at the amplifier's output: 1.5 V at the pin for 200 V, of 3.3 V in 4,096 codes, around the middle
+/// (`docs/hardware.md`).
 const MONITOR_CODES_PER_V: f64 = 1.5 / 200.0 / 3.3 * 4096.0;
 const MONITOR_ZERO_CODE: f64 = 2048.0;
-/// Codes of the DAC a volt: 10 V is full scale.
+/// DAC codes per volt: 10 V is full scale.
 const DAC_CODES_PER_V: f64 = 32_768.0 / 10.0;
 
-/// What a test has broken of the inputs.
+/// Inputs broken by a test.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BrokenInputs {
-    /// The level of the amplifier's ready line, whatever the amplifier does.
+    /// Level of the amplifier's ready line, regardless of the amplifier.
     pub ready: Option<bool>,
-    /// The level of the arm switch, whatever the person does.
+    /// Level of the arm switch, regardless of the person.
     pub arm_switch: Option<bool>,
-    /// Volts that the monitor shows, whatever the amplifier puts out.
+    /// Monitor voltage, regardless of the amplifier's output.
     pub monitor_v: Option<f64>,
 }
 
-/// A Pico with DAC, amplifier, screen, finger and touch source, and a host's end of its serial line.
+/// A Pico with DAC, amplifier, screen, finger and touch source, and the host's end of its serial line.
 ///
-/// Time is virtual: it passes in [`Self::step`] only, so it waits for a host however busy the machine is. The world
-/// advances by a tick with each frame that the board sends at its beat, and at the same rate without frames. The board
-/// takes touch reports from its host; here the touch source sends them over the same line, between the host's frames.
-/// An image with an optical frame takes them from [`Self::attach_frame`].
+/// Time is virtual and passes only in [`Self::step`], so it waits for a host on a busy machine. The world advances by
+/// one tick with each frame that the board sends at its beat, and at the same rate without frames. The board receives
+/// touch reports from its host; here, the touch source sends them over the same line, between the host's frames. An
+/// image with an optical frame receives them from [`Self::attach_frame`].
 #[derive(Debug)]
 pub struct PicoRig {
     process: Process,
@@ -72,27 +72,27 @@ pub struct PicoRig {
     pub broken: BrokenInputs,
     tick_period: Duration,
     now: Duration,
-    /// When the current tick ends.
+    /// Time at which the current tick ends.
     tick_ends_at: Duration,
-    /// When the last frame ended.
+    /// Time at which the last frame ended.
     frame_ended_at: Option<Duration>,
     amplifier_enable: bool,
-    /// Since when the amplifier has been disabled and the DAC's output zero.
+    /// Time since which the amplifier has been disabled and the DAC's output zero.
     zero_since: Option<Duration>,
     to_board: VecDeque<u8>,
-    /// Frames of the touch source that wait for the host to send them; `None` while the rig sends them itself.
+    /// Frames of the touch source for the host to send; `None` while the rig sends them itself.
     touch_frames: Option<Vec<u8>>,
     at_host: Vec<u8>,
     events: Option<Vec<Stamped>>,
-    /// The bytes that were sent to the board since its orders are watched.
+    /// The bytes sent to the board since its orders are watched.
     watched_bytes: Option<Vec<u8>>,
     starts: u32,
     instructions: u64,
 }
 
 impl PicoRig {
-    /// Switches a board on that has stored the limits of [`Board::PICO`], in a world whose finger is up, and which has
-    /// the board's tick rate.
+    /// Switches on a board with the stored limits of [`Board::PICO`], in a world whose finger is up and whose tick rate
+    /// is the board's.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
         let words = [&[LIMITS_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
@@ -100,7 +100,7 @@ impl PicoRig {
         Ok(rig)
     }
 
-    /// Switches a board on that has stored nothing yet: its limits are those that are built in.
+    /// Switches on a board without stored limits, which uses its built-in ones.
     pub fn factory_new(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let tick_period = Duration::from_secs_f64(1.0 / f64::from(world.tick_hz()));
         Ok(Self {
@@ -145,12 +145,12 @@ impl PicoRig {
         &self.dac
     }
 
-    /// How often the firmware has started.
+    /// Number of firmware starts.
     pub fn starts(&self) -> u32 {
         self.starts
     }
 
-    /// Number of instructions carried out since the board was first switched on.
+    /// Number of executed instructions since the board was first switched on.
     pub fn instructions(&self) -> u64 {
         self.instructions
     }
@@ -161,12 +161,12 @@ impl PicoRig {
         Drive { dac_code: DacCode::from_bits(code as i16), amplifier_enable: self.amplifier_enable }
     }
 
-    /// Since when the amplifier has been disabled and the DAC's output zero; `None` while either is not.
+    /// Time since which the amplifier has been disabled and the DAC's output zero; `None` otherwise.
     pub fn zero_since(&self) -> Option<Duration> {
         self.zero_since
     }
 
-    /// Records from now on what happens on the wires.
+    /// Records events on the wires from now on.
     pub fn record_events(&mut self) {
         self.events = Some(Vec::new());
     }
@@ -176,23 +176,22 @@ impl PicoRig {
         self.events.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Leaves the touch source's frames to the caller from now on, who takes them after every step and sends them on
-    /// the line that carries its own.
+    /// Leaves the touch source's frames to the caller, who takes them after every step and sends them on its own line.
     pub(crate) fn hand_over_touch_frames(&mut self) {
         self.touch_frames = Some(Vec::new());
     }
 
-    /// The frames of the touch source that wait for the caller.
+    /// The touch source's frames for the caller.
     pub(crate) fn take_touch_frames(&mut self) -> Vec<u8> {
         self.touch_frames.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Whether frames of the touch source wait for the caller.
+    /// Whether there are frames of the touch source for the caller.
     pub(crate) fn has_touch_frames(&self) -> bool {
         self.touch_frames.as_ref().is_some_and(|frames| !frames.is_empty())
     }
 
-    /// Sends bytes from the host: whole frames, so that those of the touch source go between them.
+    /// Sends whole frames from the host, so that frames of the touch source fit between them.
     pub fn send(&mut self, bytes: &[u8]) {
         self.to_board.extend(bytes);
     }
@@ -214,7 +213,7 @@ impl PicoRig {
             let frame_before = self.frame_ended_at;
             let ran = self.run((self.tick_ends_at + tolerance).saturating_sub(self.now), 0)?;
             let is_due = self.now + tolerance >= self.tick_ends_at;
-            // The board's beat begins at any time of the world's tick, which follows it from the second frame on.
+            // The board's beat may start anywhere in the world's tick, which follows it from the second frame on.
             let is_beat =
                 frame_before.is_some_and(|at| self.now.saturating_sub(at).abs_diff(self.tick_period) <= tolerance);
             let (boundary, earlier) = match (ran.ended, ran.events.split_last()) {
@@ -235,17 +234,17 @@ impl PicoRig {
         }
     }
 
-    /// Runs so many instructions, at most until the next frame ends. Returns whether all of them were carried out.
+    /// Runs a number of instructions, or until the next frame ends. Returns whether all of them were executed.
     pub fn run_instructions(&mut self, count: u32) -> Result<bool, EmulatorError> {
         let ran = self.run(self.tick_period, count)?;
         self.follow(&ran.events);
         Ok(ran.ended == Ended::Instructions)
     }
 
-    /// Runs for a time, or until a frame of the DAC ends or the touch frame is asked.
+    /// Runs for a time, or until a frame of the DAC ends or the touch frame is addressed.
     fn run_to_question(&mut self, time: Duration, instructions_max: u32) -> Result<Ran, EmulatorError> {
         let sense = self.world.sense();
-        // The board has latched its last code just now, and reads the monitor before that has moved it.
+        // The board has just latched its last code, and reads the monitor before this code has changed it.
         let monitor_v = self.broken.monitor_v.unwrap_or_else(|| self.world.monitor_now_v());
         let monitor_code = (MONITOR_ZERO_CODE + monitor_v * MONITOR_CODES_PER_V).round().clamp(0.0, 4095.0);
         let is_held = self.broken.arm_switch.unwrap_or(sense.arm_switch && self.now >= PRESSED_AT);
@@ -276,7 +275,7 @@ impl PicoRig {
         Ok(ran)
     }
 
-    /// Advances the world by a tick in which the output was as it is now.
+    /// Advances the world by one tick with the current output.
     fn advance_world(&mut self) -> RigTick {
         let drive = self.output();
         let felt = self.world.apply(drive);
@@ -304,7 +303,7 @@ impl PicoRig {
         }
     }
 
-    /// Lets events act on the chips.
+    /// Applies events to the chips.
     fn follow(&mut self, events: &[Stamped]) {
         for stamped in events {
             let behind = stamped.at.saturating_sub(Duration::from_nanos(self.dac.now_ns()));
@@ -347,5 +346,5 @@ impl PicoRig {
 }
 
 fn no_answer(what: &str) -> EmulatorError {
-    EmulatorError::Ended { output: format!("it has answered in words that are none, to a request {what}") }
+    EmulatorError::Ended { output: format!("its answer to a request {what} is invalid") }
 }

@@ -15,7 +15,7 @@ use crate::Journal;
 const BATCH_TICKS: usize = layout::BATCH_TICKS_MAX;
 /// Wall time between two checks whether a batch is done.
 const POLL_PERIOD: Duration = Duration::from_micros(200);
-/// Wall time that a batch may take. It takes well under a second.
+/// Wall time allowed for a batch, which takes well under a second.
 const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// The first tick at which the boards differ.
@@ -35,7 +35,7 @@ pub enum ReplayError {
     Emulator(#[from] EmulatorError),
     /// The outputs of the boards differ.
     #[error(
-        "at tick {} the emulated board answered otherwise: expected {:?}, found {:?}",
+        "at tick {} the output of the emulated board differs: expected {:?}, found {:?}",
         .0.expected.tick, .0.expected, .0.found
     )]
     Mismatch(Box<Mismatch>),
@@ -75,7 +75,7 @@ fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Resul
     Ok(())
 }
 
-/// Returns an error when the firmware has ended and started again: it then waits for the first batch.
+/// Returns an error if the firmware has restarted: it then waits for the first batch.
 fn check_starts(machine: &Machine) -> Result<(), EmulatorError> {
     if machine.memory.get(layout::STARTS)? <= 1 {
         return Ok(());

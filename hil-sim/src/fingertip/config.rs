@@ -1,4 +1,4 @@
-//! Configuration of what a finger does beyond the contact model: lag, varying load, friction noise, charge leakage.
+//! Configuration of a finger's effects beyond the contact model: lag, varying load, friction noise, charge leakage.
 
 use core::f64::consts::TAU;
 
@@ -10,13 +10,13 @@ use crate::error::{OutOfRange, zero_to_ten};
 /// to 0.6 N). A first-order lag in distance has its cutoff at `v / (2 pi L)`, so `L` is `1 / (2 pi 13,800)` m: 11.5 um.
 pub const RELAXATION_LENGTH_M: f64 = 1.0 / (TAU * 13.8e3);
 
-/// Configuration of the simulated finger, beside the contact model. Each effect can be switched off.
+/// Configuration of the simulated finger, besides the contact model. Each effect can be switched off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingertipConfig {
     /// Relaxation length of the friction, in m: 0 (friction has its steady value at once) to 10.
     pub relaxation_length_m: f64,
     /// Whether the contact starts at rest and reverses with the motion, by Dahl's law (doi:10.2514/3.61511): friction
-    /// begins at 0 at touch-down, and changes its sign over the relaxation length when the motion turns.
+    /// starts at 0 at touch-down, and changes its sign over the relaxation length when the motion reverses.
     ///
     /// Without it the contact always slips fully, and only the electric friction lags.
     pub pre_sliding: bool,
@@ -36,17 +36,17 @@ pub struct FingertipConfig {
     /// 4.5 mN for one bare finger at 0.53 N and 40 mm/s (one trial of romangrigorii/data-driven-playback).
     pub noise_rms_n: f64,
     /// Frequency below which charge leaks through the skin faster than the drive alternates, in Hz: 0 (no leakage) to
-    /// 10,000. The voltage across the gap is the electrode's voltage behind a first-order high-pass.
+    /// 10,000. The voltage across the gap is the electrode voltage after a first-order high-pass.
     ///
-    /// Leakage dominates below 250 Hz (arXiv 2409.18725). Others found a small effect of the frequency over 30 to 230
-    /// Hz (4TU 08aa3d2d), or looked for the corner and did not find it (Meyer, Peshkin, Colgate 2013):
-    /// [`Self::without_leakage`] is their reading.
+    /// Leakage dominates below 250 Hz (arXiv 2409.18725). Others found a small effect of the frequency from 30 to 230
+    /// Hz (4TU 08aa3d2d), or no corner (Meyer, Peshkin, Colgate 2013): [`Self::without_leakage`] corresponds to their
+    /// results.
     pub leakage_hz: f64,
 }
 
 impl FingertipConfig {
-    /// A finger in steady sliding under a constant load: nothing but the contact model and the measured lag of the
-    /// electric friction.
+    /// A finger in steady sliding under a constant load: only the contact model, and the measured lag of the electric
+    /// friction.
     pub const IDEAL: Self = Self {
         relaxation_length_m: RELAXATION_LENGTH_M,
         pre_sliding: false,
@@ -56,7 +56,7 @@ impl FingertipConfig {
         leakage_hz: 0.0,
     };
 
-    /// A finger with every effect that was measured.
+    /// A finger with every measured effect.
     pub const REALISTIC: Self = Self {
         relaxation_length_m: RELAXATION_LENGTH_M,
         pre_sliding: true,
@@ -66,7 +66,7 @@ impl FingertipConfig {
         leakage_hz: 250.0,
     };
 
-    /// This finger with skin through which no charge leaks.
+    /// This finger without charge leakage.
     #[must_use]
     pub fn without_leakage(self) -> Self {
         Self { leakage_hz: 0.0, ..self }

@@ -1,18 +1,18 @@
-//! Charge that leaks from the electrode's side of the gap through the skin.
+//! Charge leakage through the skin.
 
 use core::f64::consts::TAU;
 
 use crate::amplifier::Output;
 
-/// Below this difference, in volts, the leaked charge has reached its target. Otherwise the decay would reach subnormal
+/// Difference in volts below which the leaked charge is set to its target. Otherwise the decay would reach subnormal
 /// numbers.
 const SETTLED_V: f64 = 1e-9;
 
-/// A first-order high-pass from the electrode's voltage to that across the gap: the skin's side charges up to the
-/// electrode's voltage with the time constant of the leakage.
+/// A first-order high-pass from the electrode voltage to the gap voltage: the skin side charges to the electrode
+/// voltage with the leakage's time constant.
 #[derive(Clone, Debug)]
 pub(super) struct Leakage {
-    /// Part of the difference that leaks in a tick; 0 without leakage.
+    /// Fraction of the difference that leaks in a tick; 0 without leakage.
     share: f64,
     leaked_v: f64,
 }
@@ -24,7 +24,7 @@ impl Leakage {
 
     /// Returns the mean squared voltage across the gap over a tick, in V^2.
     ///
-    /// The electrode's voltage counts as its mean in what leaks; what it does within the tick stays in the square.
+    /// Leakage uses the mean electrode voltage; its variation within the tick stays in the mean square.
     pub(super) fn tick(&mut self, output: &Output) -> f64 {
         if self.share <= 0.0 {
             return output.mean_square_v2;
@@ -36,7 +36,7 @@ impl Leakage {
         across_v * across_v + output.variance_v2
     }
 
-    /// The finger has left: its charge is gone.
+    /// Resets the charge when the finger leaves.
     pub(super) fn lift(&mut self) {
         self.leaked_v = 0.0;
     }
@@ -53,7 +53,7 @@ mod tests {
         Output { mean_v: voltage_v, variance_v2: 0.0, mean_square_v2: voltage_v * voltage_v, end_v: voltage_v }
     }
 
-    /// Part of the mean square that a square wave keeps, in its steady state.
+    /// Fraction of the mean square that remains of a square wave in steady state.
     fn part_kept(half_period_ticks: u32) -> f64 {
         let mut leakage = Leakage::new(250.0, TICK_HZ);
         let ticks = 40 * half_period_ticks.max(400);

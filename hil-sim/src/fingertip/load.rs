@@ -1,23 +1,24 @@
-//! The normal load of a finger, which varies although the person tries to hold it.
+//! Normal load of a finger, which varies although the person tries to hold it constant.
 
 use crate::random::{Purpose, Random};
 
-/// Time between two values of the load, in s: short against the wander, and long against a tick.
+/// Update interval of the load, in s: short compared with the variation, and long compared with a tick.
 const STEP_S: f64 = 1e-3;
-/// Time constant of each of the two stages that make the wander, in s (assumed). Nearly all of the wander lies below
-/// 10 Hz, where the friction noise begins, so that nothing is counted twice.
+/// Time constant of both stages that shape the variation, in s (assumed). Nearly all of it lies below 10 Hz, where the
+/// friction noise begins, so that nothing is counted twice.
 const WANDER_S: f64 = 0.1;
-/// Smallest load, as a part of the load that wanders: a finger that is down presses.
+/// Smallest load as a fraction of the mean load, since a finger on the screen always presses.
 const LEAST: f64 = 0.1;
 
-/// A wander about zero with a given standard deviation: Gaussian noise behind two equal first-order low-passes.
+/// A random variation about zero with a given standard deviation: Gaussian noise after two equal first-order
+/// low-passes.
 #[derive(Clone, Debug)]
 pub(super) struct LoadWander {
     random: Random,
     sd_n: f64,
     step_ticks: u32,
     ticks_left: u32,
-    /// Part of a stage's value that remains after a step.
+    /// Fraction of a stage's value that remains after a step.
     remainder: f64,
     /// The first stage, of unit variance.
     first: f64,
@@ -26,7 +27,7 @@ pub(super) struct LoadWander {
 }
 
 impl LoadWander {
-    /// The wander of `seed`, with a standard deviation of `sd_n`.
+    /// The variation of `seed`, with a standard deviation of `sd_n`.
     pub(super) fn new(sd_n: f64, tick_hz: u32, seed: u64) -> Self {
         let step_ticks = (STEP_S * f64::from(tick_hz)).max(1.0) as u32;
         let remainder = libm::exp(-f64::from(step_ticks) / (WANDER_S * f64::from(tick_hz)));
@@ -53,7 +54,7 @@ impl LoadWander {
         is_due
     }
 
-    /// The load at this tick when it wanders about `mean_n`.
+    /// The load at this tick, varying about `mean_n`.
     pub(super) fn load_n(&self, mean_n: f64) -> f64 {
         if self.sd_n > 0.0 { (mean_n + self.second * self.second_to_n).max(LEAST * mean_n) } else { mean_n }
     }

@@ -1,39 +1,39 @@
-//! Noise of the friction of a sliding finger.
+//! Friction noise of a sliding finger.
 
 use crate::random::{Purpose, Random};
 
-/// Distance between two values of the finest part, in m. At 40 mm/s it holds what lies below 1,000 Hz.
+/// Distance between two values of the finest part, in m. At 40 mm/s it covers frequencies below 1,000 Hz.
 const FINEST_M: f64 = 20e-6;
-/// Number of parts; each changes over twice the distance of the one before, so the coarsest over 20 mm.
+/// Number of parts; each changes over twice the distance of the previous one, the coarsest over 20 mm.
 const PARTS: usize = 11;
-/// Standard deviation of a part over the rms of the sum between 10 and 1,000 Hz at 40 mm/s, behind the relaxation
-/// length of the friction. Measured: `the_noise_has_the_power_that_was_measured`.
+/// Standard deviation of a part over the rms of the sum from 10 to 1,000 Hz at 40 mm/s, after the relaxation length of
+/// the friction. Measured by `the_noise_has_the_power_that_was_measured`.
 const PART_OVER_BAND_RMS: f64 = 0.568;
 
-/// Noise with the power spectrum 1/f in the distance that the finger has slid, from cycles of 20 mm to 40 um.
+/// Noise with a 1/f power spectrum over the slid distance, from cycles of 20 mm to 40 um.
 ///
-/// 1/f in distance is 1/f in time at every speed, with the same power in every band; and the noise of a finger that
-/// does not slide stays as it is. It is a sum of random values that change at octaves of distance (Voss and Clarke,
-/// doi:10.1121/1.381721), each going straight from one to the next: so the sum goes straight between two values of the
-/// finest part, and a tick costs a multiplication.
+/// 1/f over distance is 1/f over time at every speed, with the same power in every band, and a resting finger's noise
+/// is constant. The noise is a sum of random values that change at octaves of distance (Voss and Clarke,
+/// doi:10.1121/1.381721), each interpolated linearly. The sum is thus linear between two values of the finest part, and
+/// a tick costs one multiplication.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionNoise {
     random: Random,
     part_sd_n: f64,
     /// Slope of every part, in N per [`FINEST_M`].
     slopes: [f64; PARTS],
-    /// Value that every part goes to.
+    /// Next value of every part.
     targets: [f64; PARTS],
     /// Number of values of the finest part so far.
     count: u32,
-    /// Distance since the last of them, as a part of [`FINEST_M`].
+    /// Distance since the last of them, as a fraction of [`FINEST_M`].
     way: f64,
     start_n: f64,
     slope_n: f64,
 }
 
 impl FrictionNoise {
-    /// The noise of `seed`, with `band_rms_n` between 10 and 1,000 Hz at 40 mm/s.
+    /// The noise of `seed`, with an rms of `band_rms_n` from 10 to 1,000 Hz at 40 mm/s.
     pub(super) fn new(band_rms_n: f64, seed: u64) -> Self {
         let mut noise = Self {
             random: Random::new(seed, Purpose::FrictionNoise),
@@ -57,7 +57,7 @@ impl FrictionNoise {
     pub(super) fn slide(&mut self, distance_m: f64) -> f64 {
         self.way += distance_m * (1.0 / FINEST_M);
         if self.way >= 1.0 {
-            // What is finer than a tick is left out.
+            // Omit what is finer than a tick.
             self.way = (self.way - 1.0).min(1.0);
             self.start_n += self.slope_n;
             self.count = self.count.wrapping_add(1);
@@ -66,7 +66,7 @@ impl FrictionNoise {
         self.start_n + self.way * self.slope_n
     }
 
-    /// Gives each part whose value is reached at `count` another one to go to.
+    /// Draws a new target for each part that reaches its value at `count`.
     fn turn(&mut self, count: u32) {
         let parts = self.slopes.iter_mut().zip(&mut self.targets).enumerate();
         for (part, (slope, target)) in parts.take_while(|(part, _)| count.trailing_zeros() as usize >= *part) {

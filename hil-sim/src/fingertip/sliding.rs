@@ -1,17 +1,18 @@
-//! The one pre-sliding state: friction follows its steady value over a distance, in the direction of the motion.
+//! Pre-sliding state: friction follows its steady value over a distance, in the direction of motion.
 
-/// Below this distance from its target, in newtons, a part of the friction is set to the target. Otherwise the decay
-/// would reach subnormal numbers, which are slow and never become zero.
+/// Distance in newtons below which a part of the friction is set to its target. Otherwise the decay would reach
+/// subnormal numbers, which are slow and never become zero.
 const SETTLED_N: f64 = 1e-15;
-/// Up to this exponent `1 - e^-a` is computed by a quotient of polynomials, whose error is 4e-8 at 1 and 5e-12 at 0.35.
+/// Largest exponent for which `1 - e^-a` is computed by a Padé approximant, with an error of 4e-8 at 1 and 5e-12 at
+/// 0.35.
 const PADE_UP_TO: f64 = 0.35;
 
-/// What the skin did in a tick, for everything that follows the same finger: the reference of a comparison, say.
+/// Motion of the skin in a tick, for models that follow the same finger, such as a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipStep {
-    /// Part of the distance to its steady value that friction covered in the tick, from 0 to 1: `1 - e^(-v T / L)`.
+    /// Fraction of the distance to its steady value that friction covered in the tick, from 0 to 1: `1 - e^(-v T / L)`.
     pub share: f64,
-    /// Direction of the motion, of length 1. Always `[1, 0]` without pre-sliding.
+    /// Unit vector of the motion's direction. Always `[1, 0]` without pre-sliding.
     pub direction: [f64; 2],
     /// Electric friction at this tick's load over that at the load of the profile, at the same voltage.
     pub electric_gain: f64,
@@ -21,9 +22,8 @@ impl SlipStep {
     /// A finger that does not move, under the load of the profile.
     pub(super) const REST: Self = Self { share: 0.0, direction: [1.0, 0.0], electric_gain: 1.0 };
 
-    /// Advances a friction, a force with a direction in the screen's plane, to the end of the tick: by Dahl's law
-    /// `dF/ds = (F_steady e - F) / L` along the direction `e` of the motion. Returns the part of it that opposes the
-    /// motion.
+    /// Advances a friction force in the screen's plane to the end of the tick, by Dahl's law `dF/ds = (F_steady e - F)
+    /// / L` along the direction `e` of the motion. Returns its component against the motion.
     ///
     /// In steady sliding this is a first-order lag with the cutoff `v / (2 pi L)`.
     pub fn advance(&self, friction_n: &mut [f64; 2], steady_n: f64) -> f64 {
@@ -46,7 +46,7 @@ pub(super) struct Sliding {
     tick_period_s: f64,
     /// `1 / L`; `None` if friction has its steady value at once.
     per_length: Option<f64>,
-    /// Whether the direction of the motion counts.
+    /// Whether the direction of the motion is taken into account.
     is_directed: bool,
     place_m: Option<[f64; 2]>,
     direction: [f64; 2],
@@ -68,7 +68,8 @@ impl Sliding {
         }
     }
 
-    /// Moves the finger to a place, at a speed. Returns the part of the friction's way, and the direction.
+    /// Moves the finger to a place, at a speed. Returns the fraction of the distance covered by friction, and the
+    /// direction.
     pub(super) fn to(&mut self, place_m: [f64; 2], speed_m_per_s: f64) -> (f64, [f64; 2]) {
         if self.is_directed {
             self.turn_towards(place_m);
@@ -82,7 +83,7 @@ impl Sliding {
         (self.share, self.direction)
     }
 
-    /// The finger has left the screen.
+    /// Resets the state when the finger leaves the screen.
     pub(super) fn lift(&mut self) {
         self.place_m = None;
     }
@@ -100,7 +101,7 @@ impl Sliding {
     }
 }
 
-/// `1 - e^-a` for `a >= 0`: the part of a way that is behind after `a` relaxation lengths. Its error is at most 5e-12.
+/// `1 - e^-a` for `a >= 0`: the fraction covered after `a` relaxation lengths. Its error is at most 5e-12.
 pub fn one_minus_exp(a: f64) -> f64 {
     if a < PADE_UP_TO {
         // Padé approximant [4/4] of e^-a.

@@ -4,9 +4,9 @@ use frixel_board::self_test::Fall;
 
 use super::wrong::Wrong;
 
-/// Cycles in a microsecond. Each look at the time takes one.
+/// Cycles per microsecond. Reading the time takes one.
 pub(super) const CYCLES_PER_US: u32 = 2;
-/// Time from the last kick until the enable falls, us, and that of a board whose one-shot is too long.
+/// Time from the last kick until the enable falls, us, and the same for a one-shot that is too long.
 pub(super) const ONE_SHOT_US: u32 = 900;
 const LONG_US: u32 = 1_200;
 /// Time from a kick to the rise of the enable, and from disabling it to its fall, us.
@@ -20,17 +20,17 @@ pub(super) struct OneShot {
     now: u32,
     rises_at: Option<u32>,
     falls_at: Option<u32>,
-    /// Since when the enable has been high.
+    /// Time since which the enable has been high.
     high_since: Option<u32>,
     refused_cycles: u32,
-    /// Pulses that have ended.
+    /// Number of ended pulses.
     pulses: u32,
     rose: Option<u32>,
     fell: Option<Fall>,
 }
 
 impl OneShot {
-    /// Lets a cycle pass in which the enable must be low if it `is_refused`, and returns the time.
+    /// Advances by one cycle, in which the enable must be low if it `is_refused`, and returns the time.
     pub(super) fn pass(&mut self, is_refused: bool) -> u32 {
         self.now += 1;
         self.refused_cycles += u32::from(is_refused && self.high_since.is_some());
@@ -82,7 +82,7 @@ impl OneShot {
         self.fell.take()
     }
 
-    /// Time for which the enable has been high although it was refused, us.
+    /// Time for which the enable was high although it was refused, us.
     pub(super) fn refused_us(&self) -> u32 {
         self.refused_cycles / CYCLES_PER_US
     }

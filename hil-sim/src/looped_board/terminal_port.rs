@@ -9,7 +9,7 @@ use frixel_control::Board;
 use super::Port;
 use crate::PseudoTerminal;
 
-/// The longest that the board may be ahead of real time, and how long it waits for a byte.
+/// Largest lead of the board over real time, and time to wait for a byte.
 const AHEAD_MAX: Duration = Duration::from_millis(2);
 const WAIT: Duration = Duration::from_millis(1);
 
@@ -21,7 +21,7 @@ pub struct TerminalPort {
 }
 
 impl TerminalPort {
-    /// A terminal that a client may open at [`Self::path`].
+    /// A terminal for a client to open at [`Self::path`].
     pub fn open() -> io::Result<Self> {
         Ok(Self { terminal: PseudoTerminal::open()?, begun: None, ticks: 0 })
     }
@@ -55,10 +55,10 @@ impl Port for TerminalPort {
         true
     }
 
-    /// Waits until the client has closed the terminal: bytes that it has not read would be lost.
+    /// Waits until the client has closed the terminal, since its unread bytes would be lost.
     fn end(&mut self) {
         while matches!(self.terminal.client_has_gone(), Ok(false)) {
-            // Systems other than Linux take a client for gone from which nothing is read.
+            // Other systems than Linux detect a gone client by reading nothing.
             self.read(&mut [0; 64]);
             sleep(WAIT);
         }

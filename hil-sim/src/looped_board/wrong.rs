@@ -1,25 +1,25 @@
-//! What can be wrong with a board.
+//! Defects of a board.
 
 use frixel_board::self_test::{Inputs, Levels, Wire};
 
-/// Declares [`Wrong`] with its names, so that none is left out of [`Wrong::ALL`].
+/// Declares [`Wrong`] with its names, so that [`Wrong::ALL`] is complete.
 macro_rules! wrongs {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// One thing that is wrong with a board or its wires.
+        /// A defect of a board or its wires.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Wrong {
             $($(#[doc = $doc])+ $variant,)+
         }
 
         impl Wrong {
-            /// All of them, with their names.
+            /// All defects, with their names.
             pub const ALL: &[(&str, Self)] = &[$(($name, Self::$variant)),+];
         }
     };
 }
 
 wrongs! {
-    /// The board and its wires are in order.
+    /// No defect.
     Nothing = "nothing",
     /// The amplifier is plugged in, and its ready is high.
     ReadyHigh = "ready-high",
@@ -33,7 +33,7 @@ wrongs! {
     SwitchClosed = "switch-closed",
     /// The arm switch is pressed after the wires were found.
     SwitchPressed = "switch-pressed",
-    /// The arm switch is pressed during a pulse of the enable, and let go at its end.
+    /// The arm switch is pressed during a pulse of the enable, and released at its end.
     SwitchPressedInPulse = "switch-pressed-in-pulse",
     /// The arm switch is pressed during the pulse that the board cuts short.
     SwitchPressedInCutPulse = "switch-pressed-in-cut-pulse",
@@ -41,7 +41,7 @@ wrongs! {
     SwitchPressedUnderTicks = "switch-pressed-under-ticks",
     /// The amplifier's monitor is plugged in.
     MonitorDriven = "monitor-driven",
-    /// The monitor is beside zero.
+    /// The monitor is offset from zero.
     MonitorNotZero = "monitor-not-zero",
     /// The wire from SDI to SDO is missing.
     NoDataWire = "no-data-wire",
@@ -61,9 +61,9 @@ wrongs! {
     EnableStaysHigh = "enable-stays-high",
     /// The one-shot takes 1.2 ms.
     OneShotLong = "one-shot-long",
-    /// The one-shot ends although it is kicked again.
+    /// The one-shot ends despite another kick.
     NotRetriggered = "not-retriggered",
-    /// Disabling the enable takes as long as the one-shot.
+    /// Disabling takes as long as the one-shot.
     NotCut = "not-cut",
     /// A frame has 23 clocks.
     Clocks23 = "clocks-23",
@@ -73,7 +73,7 @@ wrongs! {
     NoLatch = "no-latch",
     /// SYNC rises too late.
     LatchLate = "latch-late",
-    /// SYNC rises now early, now late.
+    /// SYNC rises at varying times.
     LatchMoves = "latch-moves",
     /// The tick moves the rise of SYNC.
     LatchMovesUnderTicks = "latch-moves-under-ticks",
@@ -81,7 +81,7 @@ wrongs! {
     AdcDead = "adc-dead",
     /// The ADC reads the middle.
     AdcFrozen = "adc-frozen",
-    /// Flash wait states cost more than is assumed.
+    /// Flash wait states cost more than assumed.
     TicksSlow = "ticks-slow",
     /// A tick misses its deadline.
     TickLate = "tick-late",
@@ -89,12 +89,12 @@ wrongs! {
     LineLoses = "line-loses",
 }
 
-/// How far the script is.
+/// Progress of the script.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Progress {
-    /// The wire of the enable was not looked for yet.
+    /// The wire of the enable has not been sought yet.
     Begun,
-    /// It was found, and the enable is low, or was not high for long.
+    /// The wire was found, and the enable is low or was high only briefly.
     Wired,
     /// The enable has been high long enough for an amplifier to turn on.
     Enabled,
@@ -108,7 +108,7 @@ pub(super) enum Progress {
 pub(super) const LOW: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
 
 impl Wrong {
-    /// What is wrong by its name.
+    /// The defect of a name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, wrong)| *wrong)
     }

@@ -1,8 +1,8 @@
-//! Strokes of people: touches with the statistics of recorded ones.
+//! Human strokes: touches with the statistics of recorded ones.
 //!
-//! A person lands, crosses a part of the screen, and lifts. The speed of a touch rises and falls as in a movement of
-//! minimum jerk, wanders around that, and so does the heading. Recorded strokes were reconstructed in two ways, which
-//! bracket what the fingers did: [`Hand::Smooth`] and [`Hand::Rough`].
+//! A person lands, crosses a part of the screen, and lifts. The speed of a touch varies around a minimum-jerk profile,
+//! and the heading around its mean. Recorded strokes were reconstructed in two ways, which bracket the actual motion:
+//! [`Hand::Smooth`] and [`Hand::Rough`].
 
 use core::f64::consts::TAU;
 use core::ops::RangeInclusive;
@@ -13,54 +13,51 @@ use super::{Point, StrokeError, StrokeRow};
 use crate::error::{OutOfRange, above_zero};
 use crate::random::{Purpose, Random};
 
-/// Seeds of [`Stroke::human`](super::Stroke::human) and [`Stroke::human_rough`](super::Stroke::human_rough) on which
-/// tests and tables judge. Nothing is tuned on them.
+/// Seeds of [`Stroke::human`](super::Stroke::human) and [`Stroke::human_rough`](super::Stroke::human_rough) for
+/// evaluation in tests and tables. Do not tune on them.
 pub const HUMAN_TEST_SEEDS: RangeInclusive<u64> = 1..=999;
-/// Seeds of the same strokes on which constants are tuned and predictors trained. Nothing is judged on them.
+/// Seeds of the same strokes for tuning constants and training predictors. Do not evaluate on them.
 pub const HUMAN_TUNING_SEEDS: RangeInclusive<u64> = 1001..=1999;
 
 /// Median speeds of about 1,300 strokes recorded on a surface-haptic tablet, m/s.
 const MEDIANS_M_PER_S: [f64; 2] = [0.048, 0.436];
 /// Largest median speed, m/s.
 const MEDIAN_MAX_M_PER_S: f64 = 10.0;
-/// Longest stroke, s: it is stored millisecond by millisecond.
+/// Longest stroke, s, since every millisecond is stored.
 const DURATION_MAX_S: f64 = 600.0;
-/// Time between two stored places, s. Between them the finger goes straight, less than 1 um beside the true path.
+/// Time between two stored places, s. Linear interpolation deviates by less than 1 um from the true path.
 const ROW_S: f64 = 1e-3;
-/// Margin at each edge of the screen, as a share of its size. A touch that comes there ends.
+/// Margin at each edge of the screen, as a fraction of its size, at which a touch ends.
 const MARGIN: f64 = 0.05;
-/// Spread of durations and of median speeds of a person's touches: the standard deviation of their logarithm
-/// (assumed).
+/// Spread of durations and median speeds of a person's touches: the standard deviation of their logarithm (assumed).
 const DURATION_SPREAD: f64 = 0.2;
 const SPEED_SPREAD: f64 = 0.1;
-/// Fastest rate of a minimum-jerk movement over its mean.
+/// Largest rate of a minimum-jerk movement over its mean.
 const PEAK_RATE: f64 = 1.875;
-/// Speed of landing and of lifting, as a share of the fastest (assumed).
+/// Speed of landing and lifting, as a fraction of the largest (assumed).
 const LANDING_SHARE: f64 = 0.35;
 /// Largest slope of a touch against the width of the screen, rad (assumed).
 const SLOPE_MAX: f64 = 0.3;
 /// Time between two touches, s (assumed).
 const LIFTS_S: [f64; 2] = [0.15, 0.45];
-/// Part of the touches that turn on the way, the time that the turn takes, s, and when it is, as a share of the
-/// touch's duration (assumed).
+/// Fraction of touches that reverse, duration of the reversal in s, and its time as a fraction of the touch (assumed).
 const TURN_SHARE: f64 = 0.08;
 const TURN_S: f64 = 0.2;
 const TURNS_AT: [f64; 2] = [0.3, 0.7];
-/// Band in which speed and heading wander, Hz (assumed).
+/// Band in which speed and heading vary, Hz (assumed).
 const WANDER_HZ: [f64; 2] = [1.0, 6.0];
-/// Band of what [`Hand::Rough`] has beside that, Hz: the uppermost below 8 Hz, so that the acceleration comes with the
-/// least speed.
+/// Additional band of [`Hand::Rough`], Hz: the uppermost below 8 Hz, where the acceleration needs the least speed.
 const ROUGH_HZ: [f64; 2] = [5.0, 8.0];
-/// Physiological tremor: its band in Hz, and its size in each axis in m rms (assumed).
+/// Physiological tremor: its band in Hz, and its amplitude in each axis in m rms (assumed).
 const TREMOR_HZ: [f64; 2] = [8.0, 12.0];
 const TREMOR_RMS_M: f64 = 0.1e-3;
-/// Sines that a random motion is a sum of.
+/// Number of sines in a random motion.
 const SINES: usize = 6;
 /// Steps of the bisection for a touch's median speed.
 const BISECTIONS: u32 = 20;
 
-/// How a person's touches differ with their median speed. The numbers were chosen so that duration, acceleration below
-/// 8 Hz and the 95th percentile of speed are those of recorded strokes, which `tests.rs` states.
+/// Dependence of a person's touches on their median speed. The numbers are fitted to the duration, acceleration below 8
+/// Hz and 95th percentile of speed of recorded strokes, which `tests.rs` states.
 #[derive(Clone, Copy, Debug)]
 struct Habits {
     median_m_per_s: f64,
@@ -68,7 +65,7 @@ struct Habits {
     duration_s: f64,
     /// Root mean square of the logarithm of speed around its rise and fall, and of the heading around its mean, in rad.
     wander: f64,
-    /// What [`Hand::Rough`] adds to the velocity in each axis, rms, m/s.
+    /// Addition of [`Hand::Rough`] to the velocity in each axis, rms, m/s.
     rough_m_per_s: f64,
 }
 
@@ -80,7 +77,7 @@ const HABITS: [Habits; 4] = [
 ];
 
 impl Habits {
-    /// Those of a median speed: in proportion to its logarithm between two of the table, constant beyond.
+    /// Habits at a median speed: interpolated over its logarithm between table entries, constant beyond.
     fn at(median_m_per_s: f64) -> Self {
         let [first, .., last] = HABITS;
         let pairs = HABITS.iter().zip(HABITS.iter().skip(1));
@@ -101,12 +98,12 @@ impl Habits {
     }
 }
 
-/// The reconstruction of recorded strokes whose statistics a hand has.
+/// The reconstruction of recorded strokes that a hand matches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Hand {
     /// Smoothed.
     Smooth,
-    /// With the noise of pixels and of the times of reports in it.
+    /// Including the noise of pixels and report times.
     Rough,
 }
 
@@ -121,7 +118,7 @@ struct Person {
     goes_right: bool,
 }
 
-/// Rows of the stroke of a seed, at a median speed or, without one, at that of the seed's person.
+/// Rows of a seed's stroke, at the given median speed or, by default, that of the seed's person.
 pub(super) fn rows(
     hand: Hand,
     [width_m, height_m]: [f64; 2],
@@ -150,7 +147,7 @@ pub(super) fn rows(
 }
 
 impl Person {
-    /// So many rows after the first one, each [`ROW_S`] after the one before, or fewer where the finger is up.
+    /// Further rows at intervals of [`ROW_S`], or fewer where the finger is up.
     fn rows(&mut self, [left_m, top_m]: [f64; 2], count: usize) -> Vec<StrokeRow> {
         let mut rows = Vec::with_capacity(count + 1);
         let row =
@@ -173,7 +170,7 @@ impl Person {
         rows
     }
 
-    /// Evenly spread between two values.
+    /// Uniform between two values.
     fn within(&mut self, [least, most]: [f64; 2]) -> f64 {
         least + (most - least) * self.random.uniform()
     }
@@ -214,23 +211,24 @@ impl Person {
     }
 }
 
-/// Speed of a touch over its fastest, from its start at 0 to its end at 1: the minimum-jerk movement, and
+/// Speed of a touch over its largest, from its start at 0 to its end at 1: the minimum-jerk profile, at least
+/// [`LANDING_SHARE`] at both ends.
 /// [`LANDING_SHARE`] at both ends.
 fn profile(share: f64) -> f64 {
     let (_, rate) = minimum_jerk(share);
     LANDING_SHARE + (1.0 - LANDING_SHARE) * rate / PEAK_RATE
 }
 
-/// Rises from 0 to 1 while `share` does, without a step of its slope.
+/// Rises from 0 to 1 as `share` does, with a continuous slope.
 fn smooth_step(share: f64) -> f64 {
     let share = share.clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-/// The velocity at a moment of a touch, before its speed is known.
+/// Velocity at a moment of a touch, before its speed is known.
 #[derive(Clone, Copy, Debug)]
 struct Velocity {
-    /// The part in proportion to the speed of the touch.
+    /// The part proportional to the touch's speed.
     of_speed: [f64; 2],
     /// The other part, m/s.
     beside_m_per_s: [f64; 2],
@@ -253,9 +251,9 @@ struct Path {
 }
 
 impl Path {
-    /// The path of velocities at the speed at which their median is the given one.
+    /// The path with a given median speed.
     fn of_median(velocities: &[Velocity], median_m_per_s: f64, inner_m: [f64; 2]) -> Self {
-        // The median lies above 0.3 of the fastest, but a touch may be cut at its edge, and start slowly.
+        // The median is above 0.3 of the largest speed, but a touch may be cut off at the edge, and start slowly.
         let (mut low, mut high) = (0.0, 8.0 * median_m_per_s);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
@@ -265,7 +263,7 @@ impl Path {
         Self::at_speed(velocities, low, inner_m)
     }
 
-    /// The path of velocities at a speed, up to where it would leave a screen on which it fits so far.
+    /// The path at a given speed, up to the edge of the screen.
     fn at_speed(velocities: &[Velocity], speed_m_per_s: f64, inner_m: [f64; 2]) -> Self {
         let (mut place_m, mut spans_m) = ([0.0_f64; 2], [[0.0_f64; 2]; 2]);
         let mut places_m = vec![place_m];
@@ -287,7 +285,7 @@ impl Path {
         }
         let middle = speeds_m_per_s.len() / 2;
         let median_m_per_s = if speeds_m_per_s.is_empty() {
-            // Nothing fits: too fast.
+            // Too fast to fit.
             f64::INFINITY
         } else {
             *speeds_m_per_s.select_nth_unstable_by(middle, f64::total_cmp).1
@@ -296,7 +294,7 @@ impl Path {
     }
 }
 
-/// A random motion in a band of frequencies: a few sines, 1 rms together.
+/// A random motion in a frequency band: a sum of a few sines, 1 rms in total.
 #[derive(Clone, Copy, Debug)]
 struct Wave {
     /// Frequency in Hz and phase in rad.

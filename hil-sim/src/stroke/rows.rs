@@ -20,18 +20,18 @@ struct Piece {
 pub(super) struct Rows {
     pieces: Vec<Piece>,
     end_s: f64,
-    /// The duration is divided into as many equal slots as there are pieces. This is the number of pieces that start
-    /// before each slot, so that a look-up searches only one slot.
+    /// The number of pieces that start before each of as many equal time slots as there are pieces, so that a look-up
+    /// searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
     has_loads: bool,
 }
 
 impl Rows {
-    /// Makes a motion through `rows`, whose times rise.
+    /// Creates a motion through `rows`, whose times ascend.
     ///
-    /// `None` if the finger cannot reach one of them at a finite speed. The finger touches the screen only between two
-    /// consecutive rows that both have a place.
+    /// `None` if a row cannot be reached at a finite speed. The finger touches the screen only between two consecutive
+    /// rows that both have a place.
     pub(super) fn new(rows: &[StrokeRow]) -> Option<Self> {
         let mut pieces = Vec::with_capacity(rows.len());
         for (start, end) in rows.iter().zip(rows.iter().skip(1)) {
@@ -69,8 +69,7 @@ impl Rows {
         self.end_s
     }
 
-    /// Returns the slot of a time. It never decreases with time, however the product is rounded; the search relies on
-    /// that.
+    /// Returns the slot of a time. It is monotonic in time regardless of rounding; the search relies on that.
     fn slot(&self, t_s: f64) -> usize {
         ((t_s * self.slots_per_s) as usize).min(self.pieces.len())
     }
@@ -98,12 +97,12 @@ impl Rows {
         self.pieces.get(started.checked_sub(1)?).filter(|piece| t_s <= piece.end_s)
     }
 
-    /// Whether the rows say the normal load.
+    /// Whether the rows state the normal load.
     pub(super) fn has_loads(&self) -> bool {
         self.has_loads
     }
 
-    /// Returns the normal load at a time up to the end, in N, if the rows say it.
+    /// Returns the normal load at a time up to the end, in N, if the rows state it.
     pub(super) fn normal_load_n(&self, t_s: f64) -> Option<f64> {
         let piece = if self.has_loads { self.piece(t_s)? } else { return None };
         let load_n = piece.start_load_n + (t_s - piece.start_s) * piece.load_slope_n_per_s;

@@ -3,7 +3,7 @@
 use super::{FingerState, Point, StrokeError};
 use crate::error::{OutOfRange, above_zero};
 
-/// A straight path, and the time that the finger takes for it.
+/// A straight path and its duration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Straight {
     from: Point,

@@ -4,15 +4,15 @@ use super::straight::minimum_jerk;
 use super::{FingerState, StrokeError};
 use crate::error::above_zero;
 
-/// Mean speed of a stroke, in m/s, chosen in the middle of the range in which people slide over textures. The middle
-/// of a stroke is at 188 mm/s, and the friction lag was measured up to 100 mm/s.
+/// Mean speed of a stroke, in m/s, in the middle of the range in which people slide over textures. The peak speed is
+/// 188 mm/s, and the friction lag was measured up to 100 mm/s.
 const PACE_M_PER_S: f64 = 0.1;
 /// Margin at each edge of the screen, as a share of its size.
 const MARGIN: f64 = 0.1;
 /// Steepest slope of a stroke: about 10 degrees.
 const SLOPE_MAX: f64 = 0.18;
-/// Largest number of strokes in a sweep from top to bottom. Only a screen thousands of times higher than wide reaches
-/// it.
+/// Largest number of strokes in a sweep from top to bottom, reached only on a screen thousands of times higher than
+/// wide.
 const SWEEP_STROKES_MAX: f64 = 10_000.0;
 
 /// Back and forth across the screen, and slowly down and up again.

@@ -1,4 +1,4 @@
-//! Faults of what is around a board: its amplifier, its DAC, its arm switch, its touch source, and the finger.
+//! Faults around a board: its amplifier, its DAC, its arm switch, its touch source, and the finger.
 
 use core::ops::Range;
 
@@ -9,34 +9,34 @@ use frixel_wire::dac_code::DacCode;
 use crate::amplifier::{AmplifierConfig, Decay};
 use crate::error::OutOfRange;
 
-/// A fault of what is around a board.
+/// A fault around a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WorldFault {
-    /// The amplifier reports that it is not ready, as after an over-current. It goes on working: the board must disable
+    /// The amplifier reports that it is not ready, as after an over-current, but keeps working. The board must disable
     /// it.
     AmplifierNotReady,
-    /// A disabled amplifier holds its output where it was.
+    /// A disabled amplifier holds its output voltage.
     AmplifierStuckOn,
-    /// The amplifier gives this part of its voltage, above 0. A supply that sags gives less than 1.
+    /// Gain of the amplifier's output, above 0. A sagging supply gives less than 1.
     AmplifierGain(f64),
     /// A disabled amplifier holds its output for this time, in seconds: 0 to 10.
     AmplifierSlowOff {
         /// In seconds: 0 to 10.
         delay_s: f64,
     },
-    /// The monitor shows this part of the output. Finite; 0 for one that is dead.
+    /// Gain of the monitor. Finite; 0 for a dead one.
     MonitorGain(f64),
-    /// The DAC holds this code, whatever the board sends.
+    /// The DAC holds this code, regardless of the board.
     DacStuck(DacCode),
-    /// The arm switch is open: the person lets go of it.
+    /// The arm switch is released.
     SwitchOpen,
     /// The arm switch stays closed, as if welded.
     SwitchWelded,
     /// No touch report arrives.
     TouchSilent,
-    /// Every touch report has the place of the first one, also when the finger has been lifted.
+    /// Every touch report has the place of the first one, even after the finger has lifted.
     TouchStuck,
-    /// Every second touch report is this far off in x, in metres. Finite.
+    /// Every second touch report is offset by this distance in x, in metres. Finite.
     TouchJumps {
         /// In metres.
         by_m: f64,
@@ -64,18 +64,18 @@ impl WorldFault {
     }
 }
 
-/// The faults of a world, each with its ticks.
+/// The scheduled faults of a world.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FaultSchedule {
     faults: Vec<(Range<u64>, WorldFault)>,
-    /// The place that a stuck touch source reports.
+    /// The place reported by a stuck touch source.
     stuck_at_m: Option<[f32; 2]>,
     /// Reports since a touch source began to jump.
     jumps: u32,
 }
 
 impl FaultSchedule {
-    /// Adds a fault. `amplifier` is the amplifier that it may be a fault of.
+    /// Adds a fault. `amplifier` is the amplifier that it may affect.
     pub(super) fn add(
         &mut self,
         ticks: Range<u64>,
@@ -87,12 +87,12 @@ impl FaultSchedule {
         Ok(())
     }
 
-    /// The faults that are there at a tick.
+    /// The faults active at a tick.
     fn at(&self, tick: u64) -> impl Iterator<Item = WorldFault> {
         self.faults.iter().filter(move |(ticks, _)| ticks.contains(&tick)).map(|(_, fault)| *fault)
     }
 
-    /// Whether a fault is there at a tick.
+    /// Whether a fault is active at a tick.
     pub(super) fn has(&self, tick: u64, fault: WorldFault) -> bool {
         self.at(tick).any(|there| there == fault)
     }
@@ -103,18 +103,18 @@ impl FaultSchedule {
         changes.then(|| self.at(tick).fold(healthy, |amplifier, fault| fault.of_amplifier(amplifier)))
     }
 
-    /// What reaches the amplifier of a board's output.
+    /// The part of a board's output that reaches the amplifier.
     pub(super) fn drive(&self, tick: u64, drive: Drive) -> Drive {
         let stuck_code = |fault| if let WorldFault::DacStuck(code) = fault { Some(code) } else { None };
         Drive { dac_code: self.at(tick).find_map(stuck_code).unwrap_or(drive.dac_code), ..drive }
     }
 
-    /// The arm switch, which is closed otherwise.
+    /// State of the arm switch, which is closed without a fault.
     pub(super) fn arm_switch(&self, tick: u64) -> bool {
         !self.has(tick, WorldFault::SwitchOpen)
     }
 
-    /// What reaches the board of a touch report.
+    /// The touch report that reaches the board.
     pub(super) fn touch(&mut self, tick: u64, touch: Option<Touch>) -> Option<Touch> {
         if self.faults.is_empty() {
             return touch;

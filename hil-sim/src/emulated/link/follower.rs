@@ -1,4 +1,4 @@
-//! The world of a board that ticks by itself: it follows the board's output.
+//! The world of a self-ticking board: it follows the board's output.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
@@ -19,7 +19,7 @@ use crate::{BoardView, RigTick, World, WorldFault};
 pub(super) struct ControlFlags {
     pub(super) end: AtomicBool,
     pub(super) stroke: AtomicBool,
-    /// Faults of the world from now on, each with its number of ticks.
+    /// Pending faults of the world, each with its duration in ticks.
     faults: Mutex<Vec<(WorldFault, u64)>>,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Follower {
     seen: u32,
     /// Number of touch reports that have been written.
     reports: u32,
-    /// Inputs of the board that are broken, each with its word and the tick of the world until which it is.
+    /// Broken inputs of the board, each with its word and the end of the fault in ticks of the world.
     broken: Vec<(u64, usize)>,
     flags: Arc<ControlFlags>,
 }
@@ -74,7 +74,7 @@ impl Follower {
         Ok(())
     }
 
-    /// Causes the faults that were asked for: in the world, and at the inputs that are simulated on the board.
+    /// Starts the requested faults, in the world and at the inputs simulated on the board.
     fn begin_faults(&mut self) -> Result<(), EmulatorError> {
         for (fault, ticks) in self.flags.take_faults() {
             // `LinkBoard::cause` has checked the fault.
@@ -140,7 +140,7 @@ impl Follower {
     }
 }
 
-/// The word of the board's input that a fault breaks, and its value; `None` for a fault of touch source or finger.
+/// The word and value of the board's input broken by a fault; `None` for a fault of touch source or finger.
 fn broken_input(fault: WorldFault) -> Option<(usize, u32)> {
     match fault {
         WorldFault::AmplifierNotReady => Some((layout::AMPLIFIER_FAULT, 1)),

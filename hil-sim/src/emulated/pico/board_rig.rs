@@ -9,22 +9,22 @@ use crate::emulated::{EmulatorError, Image};
 use crate::{BoardRig, RigError, RigFault, RigTick, World};
 
 const NAME: &str = "the emulated Pico";
-/// Time until the board is there, and its arm switch counts as held or as let go.
+/// Time until the board has started and its arm switch is debounced.
 const SWITCH_TIME: Duration = Duration::from_millis(60);
-/// Most time between a request or an event and what is seen of it: the supervisor of a real board waits for its
+/// Largest delay between a request or an event and its observation: the supervisor of a real board waits for its
 /// amplifier, and its touch reports take longer.
 const LATENESS: Duration = Duration::from_millis(5);
 const BOARD: Board = Board::PICO;
 
-/// A [`PicoRig`] whose person holds the arm switch, and presses it again when it is asked to.
+/// A [`PicoRig`] with a simulated person who holds the arm switch, and presses it again on request.
 pub struct PicoBoardRig {
     rig: PicoRig,
-    /// The tick until which the person has let go of the switch.
+    /// The tick until which the switch is released.
     switch_open_until: Option<u64>,
 }
 
 impl PicoBoardRig {
-    /// Switches the board on, and waits until its arm switch counts as held.
+    /// Switches the board on, and waits until its arm switch is recognised as held.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = PicoRig::start(image, world)?;
         while rig.now() < SWITCH_TIME {
@@ -36,7 +36,7 @@ impl PicoBoardRig {
 
     fn step(&mut self) -> Result<RigTick, RigError> {
         self.switch_open_until = self.switch_open_until.filter(|until| *until > self.tick());
-        // A welded switch stays closed, whatever the person does.
+        // A welded switch stays closed regardless of the person.
         let is_open = self.switch_open_until.is_some() && !self.rig.world().is_switch_welded();
         self.rig.broken.arm_switch = is_open.then_some(false);
         self.rig.step().map_err(|error| ended(&error))

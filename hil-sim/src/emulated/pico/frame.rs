@@ -13,22 +13,22 @@ use super::protocol::{Ended, FRAME_READY, Ran, Request, SCL_HELD, SDA_HELD, Stam
 use crate::chips::{HeldBus, TouchEvent, ZForceModule};
 use crate::emulated::EmulatorError;
 
-/// The byte that SDA shows while nobody drives it.
+/// The byte read from SDA while no device drives it.
 const RELEASED: u8 = 0xff;
-/// Units of the frame in a metre.
+/// Frame units per metre.
 const UNITS_PER_M: f32 = 1e4;
 
-/// A zForce module along the top edge of the screen, and what holds its bus.
+/// A zForce module along the top edge of the screen, and faults of its bus.
 #[derive(Debug)]
 pub struct TouchFrame {
     module: ZForceModule,
-    /// A device that holds SDA low, as a module does that was left in a transfer; `None` if SDA is free.
+    /// A device that holds SDA low, such as a module interrupted in a transfer; `None` if SDA is free.
     pub holds_sda: Option<HeldBus>,
     /// Whether the module holds SCL low.
     pub holds_scl: bool,
-    /// Bytes after which the module restarts in the middle of a transfer; `None` for never.
+    /// Number of bytes after which the module restarts in the middle of a transfer; `None` for never.
     pub restarts_after: Option<u32>,
-    /// Whether the module has nothing more to send in the transfer that is under way.
+    /// Whether the module has nothing more to send in the current transfer.
     has_ended: bool,
     is_touched: bool,
     written: Vec<u8>,
@@ -68,7 +68,7 @@ impl TouchFrame {
         }
     }
 
-    /// The inputs of a run that it gives: whether data is ready, and whether SDA and SCL are held low.
+    /// Its inputs for a run: whether data is ready, and whether SDA and SCL are held low.
     pub(super) fn inputs(&self) -> u32 {
         let Ok(is_ready) = self.module.data_ready().is_high();
         let sda_is_held = self.holds_sda.as_ref().is_some_and(|bus| matches!(bus.sda().is_low(), Ok(true)));
@@ -80,7 +80,7 @@ impl TouchFrame {
     fn answer(&mut self, event: WireEvent) -> Option<u8> {
         match event {
             WireEvent::I2cAddress { address, .. } => {
-                // The START condition resets what was left in a transfer.
+                // The START condition resets an interrupted transfer.
                 let has_started = self.holds_sda.as_ref().is_none_or(HeldBus::start);
                 Some(u8::from(has_started && self.module.acknowledges(address)))
             }

@@ -1,12 +1,12 @@
-//! Faults of the board itself: power, reset, clocks, state machines, jumps that no instruction asked for.
+//! Faults of the board itself: power, reset, clocks, state machines, and wild jumps.
 
 use super::PicoRig;
 use super::protocol::Request;
 use crate::emulated::EmulatorError;
 
-/// What a test does to the board.
+/// Fault injection for tests.
 impl PicoRig {
-    /// Cuts the power of the processor, and switches it on again. `seed` is that of what its RAM holds then. The DAC
+    /// Cuts the power of the processor, and switches it on again. `seed` determines the RAM content afterwards. The DAC
     /// keeps its own supply.
     pub fn power_cycle(&mut self, seed: u32) -> Result<(), EmulatorError> {
         self.process.request(Request::PowerCycle, &[seed]).map(drop)
@@ -17,28 +17,28 @@ impl PicoRig {
         self.process.request(Request::RunPin, &[]).map(drop)
     }
 
-    /// Stops the core for ever, as a loop without interrupts does.
+    /// Stops the core for ever, like a loop without interrupts.
     pub fn hang(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::Hang, &[]).map(drop)
     }
 
-    /// Lets the main loop hang, while interrupts go on.
+    /// Hangs the main loop, while interrupts continue.
     pub fn hang_main_loop(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::HangMainLoop, &[]).map(drop)
     }
 
-    /// Stops the crystal: core, tick and one-shot stand still, and every pin stays as it is.
+    /// Stops the crystal: core, tick and one-shot stop, and every pin keeps its level.
     pub fn stop_crystal(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::StopCrystal, &[]).map(drop)
     }
 
-    /// Stops the state machine of the one-shot: it holds what it drives.
+    /// Stops the state machine of the one-shot, which keeps driving its current level.
     pub fn stop_one_shot(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::StopPio, &[1]).map(drop)
     }
 
-    /// Lets the core go on at the first function whose name in the image contains `name`: a jump that no instruction
-    /// asked for. `false` if there is no such function.
+    /// Continues at the first function whose name in the image contains `name`, simulating a wild jump. Returns `false`
+    /// if there is no such function.
     pub fn jump_to(&mut self, name: &str) -> Result<bool, EmulatorError> {
         let Some(address) = self.address_of(name)? else { return Ok(false) };
         self.jump(address).map(|()| true)
@@ -50,7 +50,7 @@ impl PicoRig {
         Ok(self.process.request(Request::AddressOf, &bytes)?.first().copied().filter(|address| *address != 0))
     }
 
-    /// Lets the core go on at an address.
+    /// Continues at an address.
     pub fn jump(&mut self, address: u32) -> Result<(), EmulatorError> {
         self.process.request(Request::Jump, &[address]).map(drop)
     }

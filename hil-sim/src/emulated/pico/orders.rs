@@ -1,4 +1,4 @@
-//! The orders that the firmware's main loop hands to its tick, seen as by a debugger.
+//! The orders from the firmware's main loop to its tick, observed like a debugger does.
 
 use super::protocol::Request;
 use super::{PicoRig, no_answer};
@@ -9,32 +9,32 @@ const ORDER_WORDS: usize = 17;
 /// Numbers of the watched functions, in the order in which they are watched.
 const APPLY: u32 = 0;
 const TICK: u32 = 1;
-/// Parts of their names, and the words to read of what their argument behind `self` points at: the order.
+/// Parts of their names, and the number of words to read at their argument after `self`: the order.
 const NAMES: [(&str, usize); 2] = [("Ticker$GT$5apply", ORDER_WORDS), ("6Ticker4tick", 0)];
 
-/// An order that the tick has taken.
+/// An order taken by the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AppliedOrder {
-    /// Ticks since the orders are watched, with the one that follows the order.
+    /// Ticks since the start of watching, including the one that follows the order.
     pub tick: u32,
-    /// The number of its kind, as [`Order`](frixel_control::Order) counts them, and what follows that in memory.
+    /// The number of its kind, as in [`Order`](frixel_control::Order), and the following words in memory.
     pub words: [u32; ORDER_WORDS],
 }
 
-/// The bytes that the board has received, and the orders that its tick has taken.
+/// The bytes received by the board, and the orders taken by its tick.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Watched {
-    /// The bytes that were sent to it: frames of the host and of the touch source.
+    /// The bytes sent to it: frames of the host and of the touch source.
     pub bytes: Vec<u8>,
-    /// The orders that its tick has taken.
+    /// The orders taken by its tick.
     pub orders: Vec<AppliedOrder>,
     /// Number of ticks.
     pub ticks: u32,
 }
 
 impl PicoRig {
-    /// Notes every byte that the board receives and every order that its tick takes, until its next start. Returns
-    /// `false` if the image does not name the functions.
+    /// Records every byte received by the board and every order taken by its tick, until its next start. Returns
+    /// `false` if the image lacks the names of the functions.
     pub fn watch_orders(&mut self) -> Result<bool, EmulatorError> {
         for (name, words) in NAMES {
             let Some(address) = self.address_of(name)? else { return Ok(false) };
@@ -44,7 +44,7 @@ impl PicoRig {
         Ok(true)
     }
 
-    /// Returns the notes, and ends them.
+    /// Returns the recording, and ends it.
     pub fn take_watched(&mut self) -> Result<Watched, EmulatorError> {
         let words = self.process.request(Request::TakeCalls, &[])?;
         let mut watched = Watched { bytes: self.watched_bytes.take().unwrap_or_default(), ..Watched::default() };

@@ -13,11 +13,11 @@ use super::protocol::Request;
 use crate::emulated::image::NODE;
 use crate::emulated::{EmulatorError, Image, harness};
 
-/// Wall time that an answer may take, on a machine that is busy with other things. A run takes milliseconds.
+/// Wall time allowed for an answer on a busy machine. A run takes milliseconds.
 const WALL_TIMEOUT: Duration = Duration::from_mins(2);
-/// A message of more words is none.
+/// Largest number of words in a valid message.
 const WORDS_MAX: u32 = 1 << 24;
-/// Bytes that an error repeats of what the emulator says, from the end.
+/// Largest number of bytes of the emulator's output in an error, from the end.
 const ERRORS_MAX_LEN: u64 = 64 << 10;
 
 /// A running emulator. Dropping this ends it.
@@ -26,7 +26,7 @@ pub(super) struct Process {
     child: Child,
     to: ChildStdin,
     from: BufReader<ChildStdout>,
-    /// What it says on standard error, in a file, so that it never waits for a reader.
+    /// Standard error of the emulator, in a file, so that it never waits for a reader.
     errors: NamedTempFile,
 }
 
@@ -88,9 +88,9 @@ impl Process {
         }
     }
 
-    /// The error with which the emulator has ended.
+    /// The error that ended the emulator.
     fn ended(&mut self) -> EmulatorError {
-        // It has said why before it closed its output. One that answers nonsense lives, and would be waited for.
+        // It has reported the reason before closing its output. After an invalid answer it still runs, and would block.
         let _ = self.child.kill();
         let _ = self.child.wait();
         match self.last_errors() {
@@ -99,7 +99,7 @@ impl Process {
         }
     }
 
-    /// The end of what it has said on standard error.
+    /// The end of its output on standard error.
     fn last_errors(&self) -> io::Result<String> {
         let mut file = File::open(self.errors.path())?;
         let len = file.metadata()?.len();

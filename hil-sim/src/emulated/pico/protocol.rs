@@ -34,11 +34,11 @@ pub(super) enum Ended {
     Time,
     /// SYNC rose.
     Frame,
-    /// So many instructions were carried out.
+    /// The number of instructions was executed.
     Instructions,
     /// The board has reset itself, and has started again.
     Reset,
-    /// The touch frame was told something, or asked.
+    /// The touch frame was addressed.
     FrameAsked,
 }
 

@@ -93,7 +93,7 @@ fn acceleration_below_8_hz(touch: &[FingerState]) -> f64 {
     (0..=bins).map(|bin| power(bin, 0) + power(bin, 1)).sum::<f64>().sqrt()
 }
 
-/// What the touches of many seeds have: medians over the touches.
+/// Statistics of the touches of many seeds: medians over the touches.
 struct Found {
     median_m_per_s: f64,
     duration_s: f64,
@@ -118,8 +118,8 @@ fn found(hand: Hand, screen_m: [f64; 2], median_m_per_s: f64) -> Found {
     }
 }
 
-/// Checks the medians of touches against those recorded. Of speed percentiles and durations the recordings have no
-/// quartiles: a tenth beside the recorded range is allowed.
+/// Checks the medians of touches against the recorded ones. The recordings have no quartiles of speed percentiles and
+/// durations, so a tolerance of a tenth of the recorded range is allowed.
 fn check(hand: Hand, screen_m: [f64; 2], recorded: &Recorded, whole_duration: bool) {
     let Recorded { median_m_per_s, duration_s, fast_over_median: [least, most], .. } = *recorded;
     let found = found(hand, screen_m, median_m_per_s);
