@@ -1,5 +1,4 @@
-//! The carrier between the DAC and the electrode: the rms voltage lost in its edges, and the current through the
-//! electrode.
+//! The carrier between the DAC and the electrode: the loss of rms voltage at its edges, and the electrode current.
 
 use core::f64::consts::PI;
 
@@ -27,8 +26,8 @@ pub struct Carrier {
     pub half_period_ticks: u32,
     /// Time constant `tau` of the lag, in seconds; zero if there is no lag.
     ///
-    /// An amplifier's lag `a` and a series resistor's `b` in a row take as much of a square wave's mean square as one
-    /// of `a + b - a b/(a + b)`: within 0.5 % of the mean square from a half period of 6 `tau` on.
+    /// An amplifier's lag `a` followed by a series resistor's lag `b` reduces a square wave's mean square like a single
+    /// lag of `a + b - a b/(a + b)`: within 0.5 % of the mean square for half periods of 6 `tau` or more.
     pub edge_time_constant_s: f32,
 }
 
@@ -47,10 +46,10 @@ impl Carrier {
     /// The lag leaves `1 - (2 tau/T) tanh(T/(2 tau))` of a square wave's mean square: the steady response goes from
     /// minus to plus its peak along `1 - 2 exp(-t/tau)/(1 + exp(-T/tau))`.
     ///
-    /// A sine is held for a tick at a time, so that it has harmonics: of its mean square the lag leaves
-    /// `1 - (1 - cos w) sinh(x)/(x (cosh x - cos w))`, with `x` the time constants in a tick and `w = pi/H` the angle
-    /// of a tick, a half period being `H` ticks. That is `(h^2 + t^2 (1 - h/(x/2)))/(h^2 + t^2)` with `h = tanh(x/2)`
-    /// and `t = tan(w/2)`. For many ticks it becomes the `1/(1 + (pi tau/T)^2)` of a smooth sine.
+    /// A sine is held for one tick at a time, and thus has harmonics. The lag leaves `1 - (1 - cos w) sinh(x)/(x (cosh
+    /// x - cos w))` of its mean square, with `x` the time constants in a tick, and `w = pi/H` the angle of a tick for a
+    /// half period of `H` ticks. This equals `(h^2 + t^2 (1 - h/(x/2)))/(h^2 + t^2)` with `h = tanh(x/2)` and `t =
+    /// tan(w/2)`. For many ticks it becomes the `1/(1 + (pi tau/T)^2)` of a smooth sine.
     ///
     /// ```
     /// use frixel_model::{Carrier, Waveform};
@@ -107,8 +106,7 @@ impl Carrier {
     }
 }
 
-/// Part of the mean square that a lag leaves of a sine of `half_period_ticks` ticks, of which each is `2 r` time
-/// constants.
+/// Fraction of the mean square that a lag leaves of a sine of `half_period_ticks` ticks, each of `2 r` time constants.
 fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
     let half_angle = T::from_f64(0.5 * PI) / half_period_ticks;
     let tan = half_angle * (T::ONE - tangent_deficit(half_angle, -(half_angle * half_angle)));
@@ -118,13 +116,13 @@ fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
     (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
 }
 
-/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4: by Lambert's
-/// continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))`, which keeps its digits for small `r` and is a tenth
-/// of the code of `tanh`.
+/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4. Lambert's continued
+/// fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))` keeps its precision for small `r`, and takes a tenth of the
+/// code of `tanh`.
 fn tangent_deficit<T: Real>(r: T, square: T) -> T {
-    /// From here on `tanh` is one to the last bit of `f64`.
+    /// From here on, `tanh` is one to the last bit of `f64`.
     const STEEP: f32 = 20.0;
-    /// Terms that leave less than a last bit up to there.
+    /// Number of terms after which the remainder is below the last bit up to there.
     const TERMS: u16 = 32;
     if r > T::from(STEEP) {
         return T::ONE - T::ONE / r;

@@ -1,5 +1,5 @@
 //! Double-single arithmetic: numbers of about 44 bits as sums of two `f32`. A board uses it where `f32` is not precise
-//! enough, since its FPU does not support `f64` and software `f64` would add its routines to the firmware image.
+//! enough, since its FPU lacks `f64`, and software `f64` would enlarge the firmware image.
 
 use core::cmp::Ordering;
 use core::fmt::{Display, Formatter, Result as FmtResult};
@@ -7,11 +7,12 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::Real;
 
-/// The unevaluated sum of two `f32`, of which the second is at most half a last bit of the first.
+/// The unevaluated sum of two `f32`, the second of which is at most half a last bit of the first.
 ///
-/// Relative errors: 1.1e-14 of a sum of like signs, 2.5e-14 of a product, 5.4e-14 of a quotient, 1e-13 of a root, while
-/// what the second part has to hold, 1e-14 of the number, is a normal `f32`; below some 1e-24 they grow to those of
-/// `f32`. Factors are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous
+/// Relative errors: 1.1e-14 for a sum of like signs, 2.5e-14 for a product, 5.4e-14 for a quotient, 1e-13 for a root,
+/// while the second part, 1e-14 of the number, is a normal `f32`; below about 1e-24 they grow to those of `f32`.
+/// Factors are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error
+/// bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
 /// error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DoubleSingle {
@@ -21,8 +22,8 @@ pub(crate) struct DoubleSingle {
 
 /// `ln 2`.
 const LN_2: DoubleSingle = DoubleSingle::of(core::f64::consts::LN_2);
-/// Coefficients of `atanh(s)/s` in `s^2`, up to `|s| = 0.172`, where the next one adds less than 1e-15. Those of `f32`
-/// add less than 1e-7.
+/// Coefficients of `atanh(s)/s` in `s^2`, for `|s|` up to 0.172, where the next one adds less than 1e-15. The `f32`
+/// coefficients add less than 1e-7.
 const ATANH: Polynomial = Polynomial {
     leading: &[
         DoubleSingle::of(1.0),
@@ -32,8 +33,8 @@ const ATANH: Polynomial = Polynomial {
     ],
     others: &[1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0, 1.0 / 17.0],
 };
-/// Coefficients of `exp(r)`, up to `|r| = 0.347`, where the next one adds less than 2e-16. Those of `f32` add less than
-/// 2e-7.
+/// Coefficients of `exp(r)`, for `|r|` up to 0.347, where the next one adds less than 2e-16. The `f32` coefficients add
+/// less than 2e-7.
 const EXP: Polynomial = Polynomial {
     leading: &[
         DoubleSingle::of(1.0),
@@ -55,17 +56,17 @@ const EXP: Polynomial = Polynomial {
 };
 /// Bits of the significand of an `f32` below its leading one.
 const SIGNIFICAND_BITS: u32 = f32::MANTISSA_DIGITS - 1;
-/// What the exponent of an `f32` is stored with.
+/// Bias of an `f32` exponent.
 const EXPONENT_BIAS: i32 = f32::MAX_EXP - 1;
-/// The largest number that [`DoubleSingle::ln`] takes.
+/// Largest argument of [`DoubleSingle::ln`].
 const LN_MAX: f32 = 1e38;
-/// What [`DoubleSingle::exp`] is computed of, at most and at least: beyond, the result is not a normal `f32`.
+/// Range of the argument of [`DoubleSingle::exp`]; outside, the result is not a normal `f32`.
 const EXP_RANGE: [f32; 2] = [-87.0, 88.0];
 
 /// A polynomial, the constant coefficient first.
 struct Polynomial {
     leading: &'static [DoubleSingle],
-    /// Those that add so little that `f32` is precise enough.
+    /// Coefficients that add so little that `f32` is precise enough.
     others: &'static [f32],
 }
 
@@ -94,13 +95,13 @@ impl DoubleSingle {
     #[inline(never)]
     fn ln_1p_near_zero(self) -> Self {
         let s = self / (Self::TWO + self);
-        // Not doubled by a product: the compiler would call the third through a register when it builds for size, and
-        // the depth of the stack could not be computed from the image.
+        // Not doubled by a product: when building for size, the compiler would call the third one through a register,
+        // and the stack depth could not be computed from the image.
         let half = s * ATANH.at(s * s);
         half + half
     }
 
-    /// Logarithm of a number from the smallest normal one to [`LN_MAX`]; not-a-number otherwise.
+    /// Logarithm of a number from the smallest normal one to [`LN_MAX`]; NaN otherwise.
     #[inline(never)]
     fn ln(self) -> Self {
         if !(self.high >= f32::MIN_POSITIVE && self.high <= LN_MAX) {
@@ -279,8 +280,8 @@ impl Real for DoubleSingle {
         let rest = ((self.high - square.high) - square.low) + self.low;
         fast_two_sum(root, 0.5 * inverse * rest)
     }
-    /// Within 2e-12 from 1e-37 to 1e38; zero and infinity outside of that. Zero for bases below the smallest normal
-    /// number, not-a-number for bases above 1e38.
+    /// Within 2e-12 from 1e-37 to 1e38; zero and infinity outside. Zero for bases below the smallest normal number, NaN
+    /// for bases above 1e38.
     #[inline(never)]
     fn pow(self, exponent: Self) -> Self {
         if self.high < f32::MIN_POSITIVE {
@@ -288,7 +289,7 @@ impl Real for DoubleSingle {
         }
         (exponent * self.ln()).exp()
     }
-    /// Within 1e-13; not-a-number above 1e38, and for -1 and less.
+    /// Within 1e-13; NaN above 1e38, and for arguments of -1 or less.
     fn ln_1p(self) -> Self {
         if self.high.abs() < 0.25 { self.ln_1p_near_zero() } else { (Self::ONE + self).ln() }
     }

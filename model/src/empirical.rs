@@ -1,4 +1,4 @@
-//! An empirical law: electric friction as a monotone function of the voltage, for a finger that the contact model does
+//! Empirical laws: electric friction as a monotone function of the voltage, for a finger that the contact model does
 //! not describe.
 
 use core::error::Error;
@@ -21,14 +21,14 @@ pub struct LawPoint {
 ///
 /// 1. Power laws through the points: below the first one, `x ~ V^exponent`; between two, the power law through both.
 ///    A single point and an exponent are a power law.
-/// 2. `x_top` is the friction of these at the largest voltage, rounded down to an `f32`. The *knots* of the law are the
-///    126 numbers whose `f32` bit patterns are that of `x_top` plus 1, less 1 to 126 times 2^20, and the number of the
-///    pattern of `x_top` plus 1 itself: eight to an octave. At the knots, the law is that of step 1; between two knots,
-///    it is the power law through both.
+/// 2. `x_top` is the friction at the largest voltage by step 1, rounded down to an `f32`. The *knots* of the law are
+///   127 numbers, eight per octave: the number whose `f32` bit pattern is that of `x_top` plus 1, and those whose
+///   patterns are 1 to 126 times 2^20 less. At the knots, the law is that of step 1; between two knots, it is the power
+///   law through both.
 ///
-/// So a bend at a point is rounded off within an eighth of an octave of friction, and each row of the board's
-/// [`InverseTable`](crate::InverseTable) lies within one power law, which is what makes its error provable. Below the
-/// lowest knot, less than 2^-15 of the friction at the largest voltage, a board drives nothing.
+/// A bend at a point is thus rounded off within an eighth of an octave of friction, and each row of the board's
+/// [`InverseTable`](crate::InverseTable) lies within one power law, so that its error can be proven. Below the lowest
+/// knot, less than 2^-15 of the friction at the largest voltage, a board outputs zero.
 ///
 /// ```
 /// use frixel_model::{EmpiricalLaw, LawPoint};
@@ -46,12 +46,12 @@ pub struct EmpiricalLaw {
     grid: RowGrid,
 }
 
-/// Why numbers are no empirical law, or not up to a voltage.
+/// Why numbers do not form an empirical law up to a voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LawError {
     /// There is no point, or there are more than [`EmpiricalLaw::POINTS_MAX`].
     PointCount {
-        /// How many there are.
+        /// The number of points.
         found: usize,
     },
     /// The exponent below the first point is outside of [`EmpiricalLaw::EXPONENTS`].
@@ -59,12 +59,12 @@ pub enum LawError {
         /// The exponent.
         found: f32,
     },
-    /// A point is not above zero and finite, or not above the one before it, in voltage or in friction.
+    /// A point is not finite and above zero, or not above the previous one, in voltage or in friction.
     Order {
         /// Number of the point, from 0.
         point: usize,
     },
-    /// The friction grows from the point before this one with a power of the voltage outside of
+    /// From the previous point to this one, friction grows with a power of the voltage outside
     /// [`EmpiricalLaw::EXPONENTS`].
     Slope {
         /// Number of the point, from 0.
@@ -90,22 +90,22 @@ impl Display for LawError {
     fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
         let [least, most] = EXPONENTS;
         match *self {
-            Self::PointCount { found } => write!(f, "a law has 1 to {POINTS_MAX} points, and this one {found}"),
-            Self::Exponent { found } => write!(f, "the exponent is {found}, and {least} to {most} is possible"),
+            Self::PointCount { found } => write!(f, "a law has 1 to {POINTS_MAX} points, but this one has {found}"),
+            Self::Exponent { found } => write!(f, "the exponent is {found}, but must be {least} to {most}"),
             Self::Order { point } => {
-                write!(f, "point {} does not lie above the one before, in volts and in newtons", point + 1)
+                write!(f, "point {} is not above the previous one, in volts and in newtons", point + 1)
             }
             Self::Slope { point, found } => write!(
                 f,
-                "up to point {} friction grows with the power {found:.3} of the voltage, and {least} to {most} is possible",
+                "up to point {} friction grows with the power {found:.3} of the voltage: expected {least} to {most}",
                 point + 1
             ),
             Self::Voltage { found, max } => {
-                write!(f, "the largest voltage is {found} V rms, and the law ends at {max} V rms")
+                write!(f, "the largest voltage is {found} V rms, but the law ends at {max} V rms")
             }
             Self::Friction { found } => {
                 let [least, most] = FRICTIONS_N;
-                write!(f, "the friction at the largest voltage is {found:e} N, and {least:e} to {most:e} N is possible")
+                write!(f, "the friction at the largest voltage is {found:e} N, but must be {least:e} to {most:e} N")
             }
         }
     }
@@ -119,21 +119,21 @@ const POINTS_MAX: usize = 16;
 const EXPONENTS: [f32; 2] = [0.5, 12.0];
 /// See [`EmpiricalLaw::FRICTIONS_N`].
 const FRICTIONS_N: [f32; 2] = [1e-6, FRICTION_MAX_N];
-/// Powers that are outside of [`EXPONENTS`] by less than this, relative to them, count as rounding errors of `f32`.
+/// Relative tolerance for powers outside [`EXPONENTS`]: the rounding error of `f32`.
 const EXPONENT_ROUNDING: f32 = 1e-5;
 
 impl EmpiricalLaw {
-    /// Most points of a law.
+    /// Largest number of points in a law.
     pub const POINTS_MAX: usize = POINTS_MAX;
-    /// Least and greatest power of the voltage with which friction may grow: [`crate::InverseTable::RELATIVE_ERROR`]
+    /// Smallest and largest power of the voltage with which friction may grow. [`crate::InverseTable::RELATIVE_ERROR`]
     /// holds between them.
     pub const EXPONENTS: [f32; 2] = EXPONENTS;
-    /// Least and greatest friction at the largest voltage, N. Below, the coefficients of a table's rows overflow;
+    /// Smallest and largest friction at the largest voltage, N. Below, the coefficients of a table's rows overflow;
     /// above, they underflow.
     pub const FRICTIONS_N: [f32; 2] = FRICTIONS_N;
 
-    /// The law of these points, with this exponent below the first, up to a largest voltage, which is at most that of
-    /// the last point: a law is never extrapolated.
+    /// Creates the law of these points, with `exponent` below the first, up to a largest voltage. This is at most the
+    /// last point's: a law is never extrapolated.
     pub fn new(exponent: f32, points: &[LawPoint], voltage_max_v_rms: f32) -> Result<Self, LawError> {
         let count = points.len();
         let (Some(last), 1..=POINTS_MAX) = (points.last().copied(), count) else {
@@ -161,7 +161,7 @@ impl EmpiricalLaw {
         if !(voltage_max_v_rms > 0.0 && voltage_max_v_rms <= last.voltage_v_rms) {
             return Err(LawError::Voltage { found: voltage_max_v_rms, max: last.voltage_v_rms });
         }
-        // What follows the last point repeats it.
+        // Repeat the last point in the unused entries.
         let mut law = Self { exponent, count: count as u8, points: [last; POINTS_MAX], grid: RowGrid::EMPTY };
         for (to, from) in law.points.iter_mut().zip(points) {
             *to = *from;
@@ -178,24 +178,24 @@ impl EmpiricalLaw {
         Ok(law)
     }
 
-    /// Electric friction in newtons at an rms voltage of zero or more. Above the last point the last power law
-    /// continues: within a carrier period the voltage on an electrode exceeds its rms value. Only the rms value stays
-    /// at or below that of the last point.
+    /// Electric friction in newtons at an rms voltage of zero or more. The last power law continues above the last
+    /// point, since the voltage on an electrode exceeds its rms value within a carrier period. The rms value itself
+    /// stays at or below the last point's.
     pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
         if !(voltage_v_rms > 0.0) {
             return 0.0;
         }
         let (point, power_below) = self.segment::<f64>(|point| f64::from(point.voltage_v_rms) >= voltage_v_rms);
         let by_points = point.0 * (voltage_v_rms / point.1).pow(1.0 / power_below);
-        // Both laws agree at the knots, and rise, so that a friction is between the same knots by both.
+        // Both laws agree at the knots and ascend, so a friction lies between the same knots in both.
         match self.knots(by_points) {
             Some((start, end)) => start.0 * (voltage_v_rms / start.1).pow(1.0 / power(start, end)),
             None => by_points,
         }
     }
 
-    /// The rms voltage in volts for an electric friction in newtons; zero for a friction of zero or less and for
-    /// not-a-number, and the voltage of the last point for more than its friction.
+    /// The rms voltage in volts for an electric friction in newtons; zero for a friction of zero or less and for NaN,
+    /// and the last point's voltage for more than its friction.
     pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
         if !(electric_friction_n > 0.0) {
             return 0.0;
@@ -207,7 +207,7 @@ impl EmpiricalLaw {
         }
     }
 
-    /// The grid of a table of this law.
+    /// The grid of this law's table.
     pub(crate) fn grid(&self) -> RowGrid {
         self.grid
     }
@@ -217,8 +217,8 @@ impl EmpiricalLaw {
         last
     }
 
-    /// The first point that reaches as far as asked for, or the last, and the power of the friction with which the
-    /// voltage grows up to it.
+    /// The first point that satisfies `reaches`, or the last one, and the power of the friction with which the voltage
+    /// grows up to it.
     fn segment<T: Real>(&self, reaches: impl Fn(&LawPoint) -> bool) -> (Point<T>, T) {
         let mut before: Option<&LawPoint> = None;
         for point in self.points.iter().take(usize::from(self.count)) {
@@ -232,7 +232,7 @@ impl EmpiricalLaw {
         (self.last().at(), T::ONE)
     }
 
-    /// The knots around a friction; `None` below the lowest and above the highest.
+    /// The knots around a friction; `None` below the lowest and above the highest knot.
     fn knots(&self, electric_friction_n: f64) -> Option<(Point<f64>, Point<f64>)> {
         let row = self.grid.row(electric_friction_n as f32);
         let knot = |row| {
@@ -268,8 +268,8 @@ fn power<T: Real>(start: Point<T>, end: Point<T>) -> T {
     ln_ratio(end.1, start.1) / ln_ratio(end.0, start.0)
 }
 
-// Inlined, it would put three divisions into one block, which the compiler calls through a register when it builds for
-// size; the depth of the stack could then not be computed from the image.
+// If inlined, it would put three divisions into one block. When building for size, the compiler would call them through
+// a register, and the stack depth could not be computed from the image.
 #[inline(never)]
 fn ln_ratio<T: Real>(end: T, start: T) -> T {
     (end / start - T::ONE).ln_1p()

@@ -107,7 +107,7 @@ pub enum InverseError {
 impl Display for InverseError {
     fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
         match self {
-            Self::BelowNatural => f.write_str("the friction is below what the finger has at no voltage"),
+            Self::BelowNatural => f.write_str("the friction is below the finger's natural friction"),
             Self::Unstable => f.write_str("the contact of this friction is unstable: it is below pull-off"),
             Self::PassesOuterRadius => f.write_str("the contact of this friction would pass the outer radius"),
             Self::OutOfRange => f.write_str("the answer is too large or too small for this precision"),
@@ -159,7 +159,7 @@ pub(crate) fn at_least_one<T: Real>(parameter: &'static str, value: T) -> Result
     require(value >= T::ONE, parameter, value, Expected::AtLeastOne)
 }
 
-/// Returns `value`, which was computed from the parameter `found`, or an error if it is not finite.
+/// Returns `value`, computed from the parameter `found`, or an error if it is not finite.
 pub(crate) fn representable<T: Real>(parameter: &'static str, found: T, value: T) -> Result<T, ParameterError> {
     if value.is_finite() {
         Ok(value)
@@ -182,7 +182,7 @@ pub(crate) fn found_voltage_v_rms<T: Real>(voltage_v_rms: T) -> Result<T, Invers
     if voltage_v_rms.is_finite() { Ok(voltage_v_rms) } else { Err(InverseError::OutOfRange) }
 }
 
-/// Rounds `value`, which was computed in f64 from `parameter` and others, to the precision of the model.
+/// Rounds `value`, computed in f64 from `parameter` and others, to the precision of the model.
 pub(crate) fn round_to_model<T: Real>(parameter: &'static str, found: T, value: f64) -> Result<T, ParameterError> {
     let rounded = T::from_f64(value);
     if rounded >= T::MIN_POSITIVE && rounded.is_finite() {

@@ -8,7 +8,7 @@ use crate::{Contact, EmpiricalLaw, LoadedContact, ParameterError};
 pub enum FrictionLaw {
     /// By the contact model.
     Contact(LoadedContact<f64>),
-    /// As it was measured.
+    /// A measured law.
     Empirical(MeasuredFriction),
 }
 
@@ -19,8 +19,8 @@ pub struct MeasuredFriction {
     pub law: EmpiricalLaw,
     /// Friction coefficient without voltage.
     pub friction_coefficient: f64,
-    /// Normal load, N. The law does not depend on it: under another load than that of the measurement, only the
-    /// friction at no voltage differs, because nobody has measured more.
+    /// Normal load, N. The law does not depend on it: under a load other than the measurement's, only the friction at
+    /// no voltage changes, since the rest was not measured.
     pub normal_load_n: f64,
 }
 
@@ -52,7 +52,7 @@ impl FrictionLaw {
         }
     }
 
-    /// The rms voltage in volts for an electric friction in newtons; zero for zero and less.
+    /// The rms voltage in volts for an electric friction in newtons; zero for zero or less.
     pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
         match self {
             Self::Contact(contact) => contact.voltage_v_rms(electric_friction_n),

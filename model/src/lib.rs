@@ -1,17 +1,17 @@
 //! Contact model of an electrovibration touchscreen: computes the friction on a finger from the voltage, and the
 //! voltage from the friction.
 //!
-//! The model is that of I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger
-//! with a touchscreen"; equation numbers are theirs. It is `no_std`, does not allocate, does not panic, and gives the
-//! same bits on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean
-//! square of the drive.
+//! The model is by I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger with a
+//! touchscreen"; equation numbers are theirs. The crate is `no_std`, does not allocate or panic, and gives the same
+//! bits on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean square of
+//! the drive.
 //!
 //! Start at [`Contact`]: create it from a finger and a coating, apply a load, then evaluate it at a voltage or a
 //! friction. On a device, [`InverseTable`] computes the voltage without root or division. The crate works with the
-//! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and
-//! computing it as a difference of totals would lose its digits. [`Carrier`], which is not part of the paper, models
-//! the losses between the DAC and the electrode, and [`TouchBound`] the voltage at which a person who touches the
-//! electrode through a bridged or a thin coating is still safe.
+//! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and a
+//! difference of totals would lose its precision. Beyond the paper, [`Carrier`] models the losses between the DAC and
+//! the electrode, and [`TouchBound`] the voltage at which touching the electrode through a bridged or a thin coating is
+//! still safe.
 //!
 //! # Where each equation is
 //!
@@ -76,7 +76,7 @@
 //!   | 1e3 | 1.999998 | 2 | 1.000001 |
 //! - "The solution to Eqs. (21) and (44)", under Eq. (44), should read Eqs. (21) and (43): (44) only defines a
 //!   dimensionless group.
-//! - Eq. (44) scales the load by `k R h0^2`. On the one core line it is `pi k R (h0/eps)^2`: `f_N = n pi/eps^2`.
+//! - Eq. (44) scales the load by `k R h0^2`. The dimensionless curve uses `pi k R (h0/eps)^2`: `f_N = n pi/eps^2`.
 //! - Eq. (22) allows a stress exponent of 0, but Eq. (24) contains its reciprocal. This crate refuses zero.
 //!
 //! Print these figures and those of the next section with

@@ -33,7 +33,7 @@ pub trait Real:
     const TWO: Self;
     /// Distance from one to the next larger number.
     const EPSILON: Self;
-    /// Smallest positive number of full precision.
+    /// Smallest positive normal number.
     const MIN_POSITIVE: Self;
     /// Largest finite number.
     const MAX: Self;
@@ -57,9 +57,9 @@ pub trait Real:
     /// Magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// Neither infinite nor not-a-number.
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// A number for each value that rises with the values of zero and above.
+    /// An integer for each value, ascending with the values of zero and above.
     fn to_rank(self) -> u64;
     /// The value of a rank.
     fn from_rank(rank: u64) -> Self;

@@ -4,8 +4,8 @@ use crate::Real;
 
 /// Number of Newton steps before every second step halves the bracket instead.
 const TRUSTED_STEPS: u32 = 12;
-/// Maximum number of steps: between two numbers of zero or more there are fewer than 2^63 others, and after the trusted
-/// steps every second step at least halves their number.
+/// Maximum number of steps. There are fewer than 2^63 numbers between two numbers of zero or more, and after the
+/// trusted steps, every second step at least halves their number.
 const STEPS: u32 = TRUSTED_STEPS + 2 * 64 + 2;
 
 /// One evaluation of the function: its sign, and Newton's next point.
@@ -17,7 +17,7 @@ pub(crate) struct Step<T> {
     pub(crate) next: T,
 }
 
-/// The function returned not-a-number, or the step limit was reached.
+/// The function returned NaN, or the step limit was reached.
 #[derive(Debug, PartialEq)]
 pub(crate) struct NotConverged;
 

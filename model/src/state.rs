@@ -6,10 +6,10 @@ use crate::error::{InverseError, StateError};
 /// A contact at a voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState<T> {
-    /// Contact radius `a`, in metres. Beyond the finger's radius the paraboloid no longer resembles it.
+    /// Contact radius `a`, in metres. Above the finger's radius, the paraboloid no longer resembles the finger.
     pub contact_radius_m: T,
-    /// Winkler-Fuss stiffness `k` in Pa/m: the finger's own, or that of a soft finger at this friction. Zero for a soft
-    /// finger without any force on it.
+    /// Winkler-Fuss stiffness `k` in Pa/m: the finger's own, or a soft finger's at this friction. Zero for a soft
+    /// finger without force.
     pub stiffness_pa_per_m: T,
     /// Friction `F_T` while sliding, in newtons, Eq. (21).
     pub friction_n: T,
@@ -68,8 +68,8 @@ pub trait ContactModel<T: Real> {
     /// The derivatives of friction with respect to voltage and load: relative error at most 4e-14 in f64, 1e-5 in f32.
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError>;
 
-    /// The least and the largest friction from no voltage to `voltage_max_v_rms`, in newtons; for a contact that needs
-    /// a voltage to exist, from the one at which it begins to hold.
+    /// Smallest and largest friction from no voltage to `voltage_max_v_rms`, in newtons. If the contact needs a voltage
+    /// to exist, the range starts there.
     fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
         Ok((self.state(T::ZERO)?.friction_n, self.state(voltage_max_v_rms)?.friction_n))
     }

@@ -1,11 +1,11 @@
-//! The current through a person who touches the electrode, through its coating, a scratch in it, or none of it, and the
-//! largest voltage for which it stays within what standards allow.
+//! The current through a person who touches the electrode, directly, through its coating or through a scratch, and the
+//! largest voltage for which this current stays within the limits of standards.
 //!
-//! The circuit is a series resistor, the coating (a capacitance, with a leak where it is scratched), a person, and the
-//! way back to the amplifier's common. The person is the network of IEC 60990, Fig. 4: 1.5 kOhm beside 0.22 uF for the
-//! skin, 500 Ohm for the body, and a low-pass of 10 kOhm and 22 nF across the body, whose output over 500 Ohm is the
-//! current **weighted** for perception and reaction. The amplifier's own lag, which makes currents smaller, is left
-//! out.
+//! The circuit consists of a series resistor, the coating (a capacitance, with a leak at a scratch), a person, and the
+//! return path to the amplifier's common. The person is the network of IEC 60990, Fig. 4: 1.5 kOhm in parallel with
+//! 0.22 uF for the skin, 500 Ohm for the body, and a low-pass of 10 kOhm and 22 nF across the body. Its output over 500
+//! Ohm is the current **weighted** for perception and reaction. The amplifier's own lag, which reduces currents, is
+//! neglected.
 //!
 //! | number | source | read |
 //! |---|---|---|
@@ -13,8 +13,8 @@
 //! | 0.7 mA peak, weighted, in normal use | IEC 61010-1:2010, 6.3.1 b); the same in IEC 62368-1, Table 4, ES1 | no |
 //! | 5 mA peak, weighted, in a single-fault condition | IEC 61010-1:2010, 6.3.2 b) | no |
 //!
-//! A coating that is too thin to be an insulation is worse than none: its charge of one half period drives current in
-//! the next. So [`TouchBound`] holds for every coating, and counts none as protection.
+//! A coating too thin to be an insulation is worse than none: its charge from one half period drives current in the
+//! next. [`TouchBound`] therefore holds for every coating, and does not count a coating as protection.
 
 /// Largest weighted touch current in normal use, A peak (IEC 61010-1, 6.3.1, unread).
 pub const TOUCH_CURRENT_MAX_A_PEAK: f64 = 0.7e-3;
@@ -28,17 +28,17 @@ const BODY_OHM: f64 = 500.0;
 const WEIGHTING_OHM: f64 = 10e3;
 const WEIGHTING_F: f64 = 22e-9;
 
-/// What lies between the electrode and the finger.
+/// State of the coating between electrode and finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coating {
-    /// Nothing: the coating is bridged by moisture, or gone.
+    /// Bridged by moisture, or missing.
     Bridged,
-    /// A coating without a defect.
+    /// Without a defect.
     Intact {
         /// Capacitance to the finger, F.
         capacitance_f: f64,
     },
-    /// A coating with a scratch.
+    /// With a scratch.
     Scratched {
         /// Capacitance to the finger, F.
         capacitance_f: f64,
@@ -47,10 +47,10 @@ pub enum Coating {
     },
 }
 
-/// The way of a touch current from the amplifier to its common.
+/// Path of a touch current from the amplifier to its common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchPath {
-    /// Series resistor before the electrode and what resistance the way back has, Ohm.
+    /// Series resistor before the electrode plus the resistance of the return path, Ohm.
     pub series_ohm: f64,
     /// The coating.
     pub coating: Coating,
@@ -67,7 +67,7 @@ pub struct TouchCurrent {
     pub a_rms: f64,
 }
 
-/// Voltages of the coating's, the skin's and the weighting's capacitance, V.
+/// Voltages of the capacitances of coating, skin and weighting, V.
 type State = [f64; 3];
 
 /// The weighted current, A.
@@ -76,14 +76,14 @@ fn weighted_a([.., weighting_v]: &State) -> f64 {
 }
 
 impl TouchPath {
-    /// Half periods until a wave counts as steady.
+    /// Number of half periods until a wave counts as steady.
     const HALF_PERIODS: u32 = 200;
-    /// Fewest steps of a half period.
+    /// Smallest number of steps in a half period.
     const STEPS: u32 = 200;
-    /// Steps in the shortest time constant.
+    /// Number of steps in the shortest time constant.
     const STEPS_PER_LAG: f64 = 4.0;
 
-    /// The current at a square carrier that has been on for long, of `drive_v_peak` volts and `carrier_hz` hertz.
+    /// The current at a steady square carrier of `drive_v_peak` volts and `carrier_hz` hertz.
     pub fn steady(&self, drive_v_peak: f64, carrier_hz: f64) -> TouchCurrent {
         let half_period_s = 0.5 / carrier_hz;
         let steps = self.steps(half_period_s).max(Self::STEPS);
@@ -107,14 +107,14 @@ impl TouchPath {
         found
     }
 
-    /// Peak of the weighted current in A for the worst envelope that a carrier of `drive_v_peak` volts and `carrier_hz`
-    /// hertz can have: any voltage up to the peak whose running integral stays within one half period at the peak on
-    /// either side of zero, which is all that the firmware's carrier promises.
+    /// Peak of the weighted current in A for the worst envelope of a carrier of `drive_v_peak` volts and `carrier_hz`
+    /// hertz. An envelope is any voltage up to the peak whose running integral stays within one half period at the peak
+    /// on either side of zero, which is all that the firmware's carrier guarantees.
     ///
-    /// The weighted current is a sum of past voltages by the impulse response. The largest such sum is found over all
-    /// ways that the integral can take, on a grid of a fortieth of a half period.
+    /// The weighted current is a sum of past voltages weighted by the impulse response. The largest such sum is found
+    /// over all paths of the integral, on a grid of a fortieth of a half period.
     pub fn any_envelope_a_peak(&self, drive_v_peak: f64, carrier_hz: f64) -> f64 {
-        /// Places of the integral: one half period is forty.
+        /// Positions of the integral: one half period is forty.
         const PLACES: usize = 81;
         let half_period_s = 0.5 / carrier_hz;
         let cell_s = half_period_s / 40.0;
@@ -140,11 +140,11 @@ impl TouchPath {
         drive_v_peak * sums.into_iter().fold(0.0, f64::max)
     }
 
-    /// The coating with the largest [`Self::any_envelope_a_peak`], of all capacitances and of none.
+    /// The coating with the largest [`Self::any_envelope_a_peak`], over all capacitances and no coating.
     pub fn worst_coating(series_ohm: f64, carrier_hz: f64) -> Self {
         let bridged = Self { series_ohm, coating: Coating::Bridged };
         let worst_a = |path: &Self| path.any_envelope_a_peak(1.0, carrier_hz);
-        // Time constants from a tenth of the weighting's to ten half periods: beyond, a coating is a bridge.
+        // Time constants from a tenth of the weighting's to ten half periods; beyond, a coating acts as a bridge.
         (0..30)
             .map(|step| 22e-6 * libm::pow(10.0, f64::from(step) / 10.0))
             .take_while(|lag_s| *lag_s < 5.0 / carrier_hz)
@@ -162,7 +162,7 @@ impl TouchPath {
         libm::ceil(Self::STEPS_PER_LAG * time_s / shortest_s) as u32
     }
 
-    /// Time in which the coating is charged, s.
+    /// Charging time constant of the coating, s.
     fn coating_lag_s(&self) -> f64 {
         match self.coating {
             Coating::Bridged => 0.0,
@@ -195,7 +195,7 @@ impl TouchPath {
         ]
     }
 
-    /// The state a step later, by the Runge-Kutta method of fourth order.
+    /// The state one step later, by the fourth-order Runge-Kutta method.
     fn stepped(&self, state: &State, drive_v: f64, step_s: f64) -> State {
         let moved = |slope: &State, time_s: f64| {
             let [a, b, c] = *state;
@@ -213,25 +213,25 @@ impl TouchPath {
 }
 
 /// The largest voltage behind a series resistor at which the touch current is within [`TOUCH_CURRENT_MAX_A_PEAK`], for
-/// every coating, a bridged one among them, every person and every envelope.
+/// every coating (including a bridged one), every person and every envelope.
 ///
-/// It is the series resistance times a current that rises with the carrier frequency, in two straight pieces that lie
-/// below 0.7 mA over the worst of [`TouchPath::any_envelope_a_peak`], with [`Self::MARGIN`].
+/// It is the series resistance times a current that rises with the carrier frequency, in two straight pieces below 0.7
+/// mA over the worst case of [`TouchPath::any_envelope_a_peak`], with [`Self::MARGIN`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchBound {
     series_ohm: f32,
 }
 
 impl TouchBound {
-    /// Least ratio of the allowed current to that at the bound: 4 % for what the amplifier's gain is above the one
-    /// that bring-up has stored, and 1.5 % for a series resistance that is small (`docs/hardware.md`, "Bring-up").
+    /// Smallest ratio of the allowed current to the current at the bound: 4 % for an amplifier gain above the one
+    /// stored by bring-up, and 1.5 % for a low series resistance (`docs/hardware.md`, "Bring-up").
     pub const MARGIN: f32 = 1.06;
     /// Current at 1 kHz, A.
     const CURRENT_A: f32 = 0.645e-3;
     /// Rise of the current below and above 1 kHz, A/Hz.
     const RISES_A_PER_HZ: [f32; 2] = [0.255e-6, 0.08e-6];
 
-    /// The bound behind a series resistance in Ohm. Infinite for a board that nobody can touch.
+    /// The bound for a series resistance in Ohm. Infinite for a board that cannot be touched.
     pub const fn behind(series_ohm: f32) -> Self {
         Self { series_ohm }
     }

@@ -9,7 +9,7 @@ use crate::error::{
 use crate::root::{Step, rising_root};
 use crate::{ContactModel, ContactState, Real, Sensitivity};
 
-/// A contact under a fixed normal load of zero or more, the attraction around it counted to an outer radius `b`
+/// A contact under a fixed normal load of zero or more, with the attraction around it up to an outer radius `b`
 /// (variant `wf-finite`).
 ///
 /// With `beta = b^2/(2 R g)`, `w = 1/(1 + q)` and `h = 1/(1 + q + beta - y)`, Eq. (19) is `y^2 - 2 q y - 2 q (w - h) -
@@ -131,7 +131,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
             return self.contact.sensitivity_of(v, T::ZERO, T::ONE);
         }
         let steepness = y / margin;
-        // w^2 - h (1 - q h), without the difference of what is nearly equal when the contact reaches the outer radius.
+        // w^2 - h (1 - q h), without the cancellation when the contact reaches the outer radius.
         let growth = rest * around * beyond * (T::ONE - q * (around + beyond));
         self.contact.sensitivity_of(v, (y + growth) * steepness, steepness)
     }

@@ -11,13 +11,13 @@ use crate::error::{
 };
 use crate::{ContactModel, ContactState, Finger, Real, Sensitivity};
 
-/// A contact under a fixed normal load of zero or more, the attraction around it counted to any distance.
+/// A contact under a fixed normal load of zero or more, with the attraction around it up to any distance.
 ///
 /// Without load this is the paper's upper bound (variant `wf-upper`), Eqs. (34), (36); with it `wf-loaded`, Eqs. (43),
 /// (21). Forward and inverse are in closed form.
 ///
-/// Error bounds, for `q` from 1e-12 to 1e12 and `n` zero or 1e-6 to 1e8, and beyond as far as the answer is a normal
-/// number: 4e-15 in f64 and 1e-6 in f32, relative to the electric friction, the friction and the voltage alike.
+/// Error bounds, for `q` from 1e-12 to 1e12 and `n` zero or 1e-6 to 1e8, and beyond while the result is a normal
+/// number: 4e-15 in f64 and 1e-6 in f32, relative to the electric friction, the friction and the voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedContact<T> {
     contact: Contact<T>,
@@ -51,8 +51,7 @@ impl<T: Real> LoadedContact<T> {
         point.map_or(T::ZERO, |point| point.electric_friction(self.contact.friction_scale_n))
     }
 
-    /// The rms voltage for a finite electric friction, in volts; zero for a friction of zero or less and for
-    /// not-a-number.
+    /// The rms voltage for a finite electric friction, in volts; zero for a friction of zero or less and for NaN.
     ///
     /// [`ContactModel::voltage_for_electric_friction`] computes the same value and checks its argument and result.
     #[inline]

@@ -61,8 +61,8 @@ impl<T: Real> ContactModel<T> for LowerBound<T> {
         self.inverse(friction_n, electric_friction_n)
     }
 
-    /// Computed directly, since the difference from natural friction would lose a friction far below `mu |F_N|` of a
-    /// pull.
+    /// Computed directly, since the difference from natural friction would lose a friction far below a pull's `mu
+    /// |F_N|`.
     fn voltage_for_friction(&self, friction_n: T) -> Result<T, InverseError> {
         let friction_n = finite("friction_n", friction_n)?;
         self.inverse(friction_n, friction_n - self.natural_friction_n)

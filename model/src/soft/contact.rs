@@ -78,13 +78,13 @@ impl<T: Real> SoftContact<T> {
 /// A soft finger under a fixed normal load of zero or more: variants `soft-upper` (no load, Eqs. (27)-(33)) and
 /// `soft-loaded` (Eq. (29) with Eq. (43), beyond the paper).
 ///
-/// With `p = F_T/(mu B E R^2)`, `tau = pi sigma0/(B E)` and `zeta = g/R` the self-consistent balance is `p = l + 2 tau
-/// (p^(2 gamma) + zeta/(1 + q))`, `q = tau/zeta p^(4 gamma - 1)`, `l` being the load in the same scale. Over `p`, each
-/// term of the right side falls, so that the root is unique for every stress exponent; it is found in a bracket, at
-/// most 142 steps, five or six are usual. The inverse takes the stiffness from the friction, Eq. (29), and is then that
-/// of [`LoadedContact`](crate::LoadedContact), in closed form.
+/// With `p = F_T/(mu B E R^2)`, `tau = pi sigma0/(B E)`, `zeta = g/R` and the load `l` in the scale of `p`, the
+/// self-consistent balance is `p = l + 2 tau (p^(2 gamma) + zeta/(1 + q))`, `q = tau/zeta p^(4 gamma - 1)`. Divided by
+/// `p`, each term of the right side falls, so the root is unique for every stress exponent. It is found in a bracket,
+/// in at most 142 steps, usually five or six. The inverse takes the stiffness from the friction, Eq. (29), and then
+/// that of [`LoadedContact`](crate::LoadedContact), in closed form.
 ///
-/// Error bounds, for stress exponents from 0.02 to 1, and held for 1e-6 too: 4e-14 in f64 and 1e-5 in f32.
+/// Error bounds, for stress exponents from 0.02 to 1 (and tested for 1e-6): 4e-14 in f64 and 1e-5 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftLoadedContact<T> {
     contact: SoftContact<T>,
@@ -120,7 +120,7 @@ impl<T: Real> SoftLoadedContact<T> {
 
     fn balance(&self, tau: T, p: T) -> Balance<T> {
         let area = p.pow(self.contact.forces.two_gamma);
-        // p^(4 gamma - 1) from the power that is there already.
+        // p^(4 gamma - 1) from the power already computed.
         let q = tau / self.zeta * (area / p) * area;
         let around = T::ONE / (T::ONE + q);
         Balance {
@@ -131,7 +131,7 @@ impl<T: Real> SoftLoadedContact<T> {
         }
     }
 
-    /// `sum over terms of (term/p) * (-d ln(term/p)/d ln p)`: how fast the balance over `p` falls, above zero.
+    /// `sum over terms of (term/p) * (-d ln(term/p)/d ln p)`, above zero: the rate at which the balance over `p` falls.
     fn steepness(&self, balance: &Balance<T>, p: T) -> T {
         let forces = &self.contact.forces;
         self.load / p
@@ -143,7 +143,7 @@ impl<T: Real> SoftLoadedContact<T> {
     fn solve(&self, tau: T) -> Result<T, StateError> {
         let two = T::TWO;
         let bound = |tau: T| (two * tau).pow(T::ONE + self.contact.forces.two_s);
-        // With c for what does not grow, p <= c + 2 tau p^(2 gamma) holds up to twice the greater of the two alone.
+        // With the constant part c, p <= c + 2 tau p^(2 gamma) holds up to twice the larger of the two bounds alone.
         let constant = self.load + two * tau * self.zeta;
         let high = (two * constant).max(bound(two * tau));
         let low = self.load.max(bound(tau));

@@ -12,7 +12,7 @@ pub fn contact_exponent<T: Real>(stress_exponent_s: T) -> Result<T, ParameterErr
     Ok(s / (T::TWO * s + T::ONE))
 }
 
-/// A finger of a material whose strain follows a power of the stress, Eq. (22), pressed into a sphere's contact.
+/// A finger of a material whose strain follows a power of the stress, Eq. (22), in a sphere's contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftFinger<T> {
     /// Radius of curvature `R` at the contact, in metres.
@@ -40,8 +40,8 @@ impl<T: Real> SoftFinger<T> {
     /// Equivalent Winkler-Fuss stiffness in Pa/m under a spring force above zero, Eqs. (26), (29):
     /// `B^(4 gamma) E/(pi R) (E R^2/P)^(4 gamma - 1)`.
     ///
-    /// The force is the normal load where there is no voltage, and friction over the coefficient of friction where
-    /// there is. Relative error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
+    /// The force is the normal load at no voltage, and friction over the coefficient of friction otherwise. Relative
+    /// error at most `11 + 3 |ln(P/(B E R^2))|` roundings of `T`.
     pub fn stiffness_pa_per_m(&self, spring_force_n: T) -> Result<T, ParameterError> {
         let forces = self.forces()?;
         let p = positive("spring_force_n", spring_force_n)? / forces.force_scale_n;
@@ -88,7 +88,7 @@ impl<T: Real> ForceLaw<T> {
         self.stiffness_scale_pa_per_m * p.pow(self.stiffening)
     }
 
-    /// The same at `p = (2 tau)^(2 s + 1)`, which may be too small for the precision where the stiffness is not:
+    /// The stiffness at `p = (2 tau)^(2 s + 1)`, which may be too small for the precision even if the stiffness is not:
     /// `(2 s + 1)(1 - 4 gamma) = 1 - 2 s`.
     pub(super) fn lower_stiffness_pa_per_m(&self, double_tau: T) -> T {
         self.stiffness_scale_pa_per_m * double_tau.pow(T::ONE - self.two_s)

@@ -138,7 +138,7 @@ impl<'contact> TableBuilder<'contact> {
         if !(low >= f32::MIN_POSITIVE && high < f32::MAX) {
             return Err(TableError::Unrepresentable);
         }
-        // A row is at most twice `half` of where it begins; an octave has 2^23 patterns.
+        // A row is at most twice `half` of its start; an octave has 2^23 patterns.
         let density = libm::ceil(512.0 / (2.0 * half));
         if !(density <= f64::from(1 << 24)) {
             return Err(TableError::TooManySegments);
@@ -154,7 +154,7 @@ impl<'contact> TableBuilder<'contact> {
     pub(super) fn fixed_layout(&self, coefficients: usize) -> Result<FixedLayout, TableError> {
         let voltage_ratio =
             self.contact.voltage_v_rms(self.friction_max_n) / self.contact.voltage_v_rms(self.friction_min_n);
-        // Half a code for each coefficient, one for each truncated step, one for the place in the row; to the fourth
+        // Half a code per coefficient, one per truncated step, and one for the position in the row; to the fourth
         // power.
         let codes = 1.5 * coefficients as f64;
         let rest = 4.0 * codes / f64::from(1_u32 << 31) * voltage_ratio + TOP_SHARE;

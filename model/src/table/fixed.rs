@@ -8,7 +8,7 @@ use super::{TableBuilder, TableError};
 
 /// One, in the Q31 of row coordinates and voltages.
 const ONE: f64 = (1_u32 << 31) as f64;
-/// Steps of a [`U0F32`] to the largest friction.
+/// Number of [`U0F32`] steps up to the largest friction.
 const FRICTION_STEPS: f64 = (1_u64 << 32) as f64;
 
 /// A table in integers over borrowed rows, with `C` coefficients per row; created by [`TableBuilder::build_fixed`].
@@ -108,8 +108,8 @@ impl<'rows, const C: usize> FixedTable<'rows, C> {
         self.voltage_max_v_rms
     }
 
-    /// An electric friction in newtons as a fraction of the largest: rounded, zero below zero and for not-a-number, and
-    /// the greatest fraction from the largest friction on.
+    /// An electric friction in newtons as a fraction of the largest, rounded; zero below zero and for NaN, and the
+    /// largest fraction from the largest friction on.
     pub fn friction(&self, electric_friction_n: f64) -> U0F32 {
         U0F32::from_bits(libm::rint(electric_friction_n / self.friction_max_n * FRICTION_STEPS) as u32)
     }

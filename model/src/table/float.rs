@@ -8,11 +8,11 @@ use super::interpolation::{Curve, Point, polynomial};
 use super::{TableBuilder, TableError};
 use crate::Real;
 
-/// Largest friction of a table, in newtons. Far above it the coefficients `V/x^n` of a row underflow, and the row
-/// exceeds the largest voltage.
+/// Largest friction of a table, in newtons. Far above, the coefficients `V/x^n` of a row underflow, and the row exceeds
+/// the largest voltage.
 pub(crate) const FRICTION_MAX_N: f32 = 1e12;
 
-/// The mapping from bit patterns of the friction to rows, and the values outside the rows.
+/// Maps bit patterns of the friction to rows, and holds the values outside the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RowGrid {
@@ -24,11 +24,11 @@ pub(crate) struct RowGrid {
 }
 
 impl RowGrid {
-    /// A grid that is to be replaced.
+    /// A placeholder grid.
     pub(crate) const EMPTY: Self =
         Self { first_bits: 0, density: NonZeroU32::MIN, friction_max_n: 0.0, voltage_max_v_rms: 0.0 };
 
-    /// `rows` rows of about `2^32/density` patterns each, the last one up to and with `friction_max_n`.
+    /// A grid of `rows` rows of about `2^32/density` patterns each, the last one up to and including `friction_max_n`.
     pub(crate) fn new(
         rows: usize,
         density: NonZeroU32,
@@ -40,22 +40,22 @@ impl RowGrid {
         Ok(Self { first_bits: first_bits as u32, density, friction_max_n, voltage_max_v_rms })
     }
 
-    /// Where a row begins; the end of the last row is where the row behind it would begin.
+    /// Start of a row; the end of the last row is the start of the row after it.
     pub(crate) fn start_n(&self, row: usize) -> f32 {
         f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32)
     }
 
-    /// The row of a friction, or a number past the last row when the friction is outside.
+    /// The row of a friction, or a number past the last row if the friction is outside.
     #[inline]
     pub(crate) fn row(&self, friction_n: f32) -> usize {
-        // Below the range the subtraction wraps to a large number; the bits of negative numbers and not-a-number are
-        // large themselves.
+        // Below the range, the subtraction wraps to a large number; the bits of negative numbers and NaN are large
+        // themselves.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
         ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
     }
 
-    /// The row behind the one that has `up_to_n`, which counts as `least_n` at least; `rows` when that is not below
-    /// the largest friction or not a number.
+    /// The row after the one that contains `up_to_n`, or `least_n` if that is larger; `rows` if `up_to_n` is
+    /// not below the largest friction, or NaN.
     pub(super) fn end_row(&self, rows: usize, up_to_n: f32, least_n: f32) -> usize {
         if up_to_n < self.friction_max_n { self.row(up_to_n.max(least_n)) + 1 } else { rows }
     }
@@ -68,7 +68,7 @@ impl RowGrid {
         self.voltage_max_v_rms
     }
 
-    /// The voltage for a friction, from its row. Outside the rows: zero below and for not-a-number, the largest above.
+    /// The voltage for a friction, from its row. Outside the rows: zero below and for NaN, the largest voltage above.
     #[inline]
     pub(super) fn evaluate<const C: usize>(&self, rows: &[[f32; C]], friction_n: f32) -> f32 {
         match rows.get(self.row(friction_n)) {
@@ -90,14 +90,14 @@ impl RowGrid {
         Some(self.voltage_max_v_rms)
     }
 
-    /// The point of a curve where a row begins.
+    /// The point of a curve at the start of a row.
     pub(super) fn start<T: Real>(&self, row: usize, curve: &impl Curve<T>) -> Point<T> {
         let friction_n = T::from(self.start_n(row));
         (friction_n, curve.voltage_v_rms(friction_n))
     }
 
-    /// Fills the rows `needed` of all the table's `rows` with a curve, from the point where the first one begins.
-    /// Returns the point where the next one begins.
+    /// Fills the rows `needed` of the table's `rows` with a curve, from the point at the start of the first one.
+    /// Returns the point at the start of the next one.
     pub(super) fn fill<T: Real, const C: usize>(
         &self,
         curve: &impl Curve<T>,
@@ -121,7 +121,8 @@ impl RowGrid {
     }
 }
 
-/// Patterns from the first row's beginning to that of row `row`: the least whose product with `density` reaches it.
+/// Number of patterns from the start of the first row to that of row `row`: the smallest whose product with `density`
+/// reaches it.
 fn offset(row: u64, density: NonZeroU32) -> u64 {
     (row << 32).div_ceil(u64::from(density.get()))
 }
@@ -132,12 +133,12 @@ fn horner<const C: usize>(row: &[f32; C], x: f32) -> f32 {
     lower.iter().rev().fold(*highest, |sum, coefficient| sum * x + coefficient)
 }
 
-/// The power of two that a positive number begins with; the smallest normal one for what is less.
+/// The largest power of two up to a positive number; the smallest normal number for anything less.
 fn power_of_two(value: f32) -> f32 {
     f32::from_bits(value.max(f32::MIN_POSITIVE).to_bits() & f32::INFINITY.to_bits())
 }
 
-/// The largest `f32` that is not above `value`.
+/// The largest `f32` up to `value`.
 pub(crate) fn round_down<T: Real>(value: T) -> f32 {
     let nearest = value.to_f32();
     if T::from(nearest) > value { nearest.next_down() } else { nearest }
@@ -161,8 +162,8 @@ impl<'rows, const C: usize> SizedTable<'rows, C> {
         Ok(Self { grid, rows })
     }
 
-    /// The rms voltage for an electric friction in newtons. It is zero for a negative friction, for not-a-number and
-    /// below the range; above the range it is the largest voltage, which it never exceeds.
+    /// The rms voltage for an electric friction in newtons. It is zero for a negative friction, for NaN and below the
+    /// range; above the range it is the largest voltage, which it never exceeds.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
         self.grid.evaluate(self.rows, electric_friction_n)

@@ -4,13 +4,13 @@ use core::mem::replace;
 
 use crate::{LoadedContact, Real};
 
-/// Where the points lie between -1 and 1: the ends, and what makes the product of distances least with them, to 1e-8.
+/// Position of the inner points between -1 and 1 that minimises the product of distances, to 1e-8.
 const INNER: f32 = core::f32::consts::SQRT_2 - 1.0;
 
 /// A point of the curve: friction and voltage.
 pub(crate) type Point<T> = (T, T);
 
-/// What a table is made of: the rms voltage as a function of the electric friction.
+/// The source of a table: the rms voltage as a function of the electric friction.
 pub(crate) trait Curve<T> {
     /// The voltage, in volts rms, for a friction above zero, in newtons.
     fn voltage_v_rms(&self, electric_friction_n: T) -> T;
@@ -32,8 +32,8 @@ impl<T: Real> Curve<T> for LoadedContact<T> {
 /// Coefficients, constant first, of the polynomial in the friction through `start`, `end` and, with more than two
 /// coefficients, one or two points of the curve between them.
 ///
-/// It is made in the friction over `unit`, a power of two near it, so that no product on the way leaves the range of
-/// `f32`.
+/// It is computed with the friction divided by `unit`, a nearby power of two, so that no intermediate product leaves
+/// the range of `f32`.
 pub(super) fn polynomial<T: Real, const C: usize>(
     curve: &impl Curve<T>,
     start: Point<T>,
@@ -51,7 +51,7 @@ pub(super) fn polynomial<T: Real, const C: usize>(
     row
 }
 
-/// The same in the variable that runs from 0 at `start` to 1 at `end`.
+/// The same polynomial in a variable that runs from 0 at `start` to 1 at `end`.
 pub(super) fn local_polynomial<const C: usize>(
     contact: &LoadedContact<f64>,
     start: Point<f64>,
@@ -80,7 +80,7 @@ fn points<T: Real, const C: usize>(curve: &impl Curve<T>, start: Point<T>, end: 
     points
 }
 
-/// Newton's form, multiplied out from its innermost bracket.
+/// Expands Newton's form from its innermost bracket.
 fn through<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
     let differences = divided_differences(points);
     let mut polynomial = [T::ZERO; C];
@@ -94,7 +94,7 @@ fn through<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
     polynomial
 }
 
-/// Of the first point, the first two, and so on to all of them.
+/// Divided differences of the first point, the first two, and so on to all of them.
 fn divided_differences<T: Real, const C: usize>(points: &[Point<T>; C]) -> [T; C] {
     let mut differences = [T::ZERO; C];
     for (difference, (_, v)) in differences.iter_mut().zip(points) {

@@ -1,4 +1,4 @@
-//! The inverse table for a microcontroller with an FPU. It has a fixed size, and the microcontroller builds it itself.
+//! The inverse table of a microcontroller with an FPU: of fixed size, and built on the microcontroller itself.
 
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -9,7 +9,8 @@ use super::interpolation::{Curve, Point};
 use crate::double_single::DoubleSingle;
 use crate::{EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real};
 
-/// Rows in a table: 31.5 octaves, enough for 200 V down to 1 V where friction grows as the fourth power of the voltage.
+/// Number of rows in a table: 31.5 octaves, enough for 200 V down to 1 V if friction grows as the fourth power of the
+/// voltage.
 const ROWS: usize = 126;
 /// Four rows per octave of 2^23 bit patterns. The `unwrap` is evaluated by the compiler.
 const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
@@ -17,15 +18,15 @@ const DENSITY: NonZeroU32 = NonZeroU32::new(4 << 9).unwrap();
 pub(crate) const LAW_ROWS: usize = ROWS;
 /// Eight rows per octave for an empirical law, which may be steeper than a contact.
 pub(crate) const LAW_DENSITY: NonZeroU32 = NonZeroU32::new(8 << 9).unwrap();
-/// The table reaches at least down to this voltage.
+/// The table reaches down to at least this voltage.
 const KNEE_V_RMS: f32 = 1.0;
 /// Or down to this fraction of the largest voltage, if that is lower.
 const KNEE_PART: f32 = 1.0 / 200.0;
 
 /// Piecewise cubic from electric friction to rms voltage for one contact under one load; 2,032 bytes.
 ///
-/// Rows below the range hold the straight line from zero to the voltage at the start of the range. A scene whose
-/// targets stay below the largest reachable friction needs fewer rows: see [`InverseTable::build_up_to`].
+/// Rows below the range hold a straight line from zero to the voltage at the start of the range. A scene whose targets
+/// stay below the largest reachable friction needs fewer rows: see [`InverseTable::build_up_to`].
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, InverseTable};
@@ -63,10 +64,14 @@ impl InverseTable {
         Self::build_up_to(contact, voltage_max_v_rms, f32::INFINITY)
     }
 
-    /// Builds the same table, truncated to the rows for electric frictions up to `up_to_n`: up to there it returns
-    /// the same bits. A truncated row costs no evaluation of the closed form; it holds the voltage at the end of the
-    /// table. If `up_to_n` is not below the largest friction, or is not-a-number, no row is truncated.
-    pub fn build_up_to(contact: &LoadedContact<f64>, voltage_max_v_rms: f64, up_to_n: f32) -> Result<Self, TableError> {
+    /// Builds the same table, truncated to the rows for electric frictions up to `up_to_n`; up to there, it returns
+    /// the same bits. A truncated row needs no evaluation of the closed form; it holds the voltage at the end of the
+    /// table. No row is truncated if `up_to_n` is NaN, or not below the largest friction.
+    pub fn build_up_to(
+        contact: &LoadedContact<f64>,
+        voltage_max_v_rms: f64,
+        up_to_n: f32,
+    ) -> Result<Self, TableError> {
         if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
             return Err(TableError::Voltage);
         }
@@ -109,7 +114,7 @@ impl InverseTable {
     /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The
     /// truncation is as in [`Self::build_up_to`].
     ///
-    /// [`Self::RELATIVE_ERROR`] holds for frictions from 2^-15 of that at the largest voltage on. Below the range the
+    /// [`Self::RELATIVE_ERROR`] holds for frictions above 2^-15 of that at the largest voltage. Below the range, the
     /// voltage is zero.
     ///
     /// ```
@@ -190,19 +195,19 @@ impl InverseTable {
     /// The rms voltage for an electric friction in newtons.
     ///
     /// The friction at the returned voltage is within [`Self::RELATIVE_ERROR`] of the target. The voltage is zero for a
-    /// negative friction and for not-a-number. Above the largest friction it is the largest voltage, which it never
-    /// exceeds. Below the range it falls along a straight line to zero; that of an empirical law is zero there.
+    /// negative friction and for NaN. Above the largest friction it is the largest voltage, which it never exceeds.
+    /// Below the range it falls along a straight line to zero; for an empirical law, it is zero there.
     #[inline]
     pub fn voltage_v_rms(&self, electric_friction_n: f32) -> f32 {
         self.grid.evaluate(&self.rows, electric_friction_n)
     }
 
-    /// The electric friction at the largest voltage, in newtons, rounded down; for a truncated table, that at its end.
+    /// The electric friction at the largest voltage, in newtons, rounded down; for a truncated table, at its end.
     pub fn electric_friction_max_n(&self) -> f32 {
         self.grid.friction_max_n()
     }
 
-    /// The largest voltage, in volts rms, rounded down; for a truncated table, that at its end.
+    /// The largest voltage, in volts rms, rounded down; for a truncated table, at its end.
     pub fn voltage_max_v_rms(&self) -> f32 {
         self.grid.voltage_max_v_rms()
     }

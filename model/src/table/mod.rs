@@ -6,12 +6,12 @@
 //!
 //! # The error bound
 //!
-//! Each polynomial of `C` coefficients passes the curve `V(x)` at `C` points, the two ends of its row among them. With
-//! `s = d ln x/d ln V`, the interpolation's relative error in friction is at most `s |x^C V^(C)|/(C! V)` times the
-//! greatest product of distances to those points, `W (half width/x)^C`. The first factor depends on dimensionless
-//! friction and load only; `reference/table_constants.py` finds its supremum over all frictions and all loads of zero
-//! or more, so that the bound holds for every finger and coating. Rounding adds its share, and so does the distance
-//! that the last row keeps from the largest voltage (`src/table/bound.rs`).
+//! Each polynomial of `C` coefficients passes through `C` points of the curve `V(x)`, including the two ends of its
+//! row. With `s = d ln x/d ln V`, the interpolation's relative error in friction is at most `s |x^C V^(C)|/(C! V)`
+//! times the largest product of distances to those points, `W (half width/x)^C`. The first factor depends only on
+//! dimensionless friction and load; `reference/table_constants.py` finds its supremum over all frictions and all loads
+//! of zero or more, so the bound holds for every finger and coating. Rounding and the margin of the last row to the
+//! largest voltage add to the bound (`src/table/bound.rs`).
 
 mod bound;
 mod builder;
