@@ -17,7 +17,7 @@ use crate::record::Record;
 use crate::region::ActiveRegion;
 use crate::tables::Tables;
 
-/// The layers of one scene. Everything that does not change from tick to tick is precomputed.
+/// The layers of one scene. Everything that is constant during a play is precomputed.
 ///
 /// [`ActiveLayers::begin`] starts a scene, and [`ActiveLayers::push`] adds its layers one by one.
 #[repr(C)]
@@ -35,7 +35,7 @@ impl ActiveLayers {
 
     /// Removes all layers.
     pub fn clear(&mut self) {
-        // Clear each field instead of copying an empty value of thousands of bytes: a tick may be waiting.
+        // Clear each field instead of copying an empty value of thousands of bytes, since a tick may be waiting.
         self.layers.clear();
         self.tables.clear();
         self.on = [0; 2];
@@ -111,8 +111,8 @@ impl ActiveLayers {
         if others == 0 { below_n } else { self.blend(u32::BITS, others, below_n, context) }
     }
 
-    /// Blends the layers in `set` over the friction of those below. `set` has a bit for each of 32 layers, from number
-    /// `first` on.
+    /// Blends the layers in `set` over the friction below. `set` has a bit for each of 32 layers, starting with number
+    /// `first`.
     #[inline]
     fn blend(&self, first: u32, mut set: u32, below_n: f32, context: &mut Context) -> f32 {
         let mut electric_friction_n = below_n;
@@ -140,7 +140,7 @@ impl ActiveLayers {
     }
 }
 
-/// Bytes of memory that a record takes: those of its layer and in the tables, not counting its points.
+/// Bytes of memory for a record: its layer and its part of the tables, without its points.
 pub fn active_bytes(record: &Record) -> usize {
     size_of::<ActiveLayer>() + record.layer.table_bytes()
 }
@@ -154,17 +154,17 @@ pub(crate) struct ActiveLayer {
     coefficients: Coefficients,
 }
 
-/// How a layer is combined with those below it.
+/// How a layer is combined with the layers below.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 enum Join {
     Blend(Blend),
-    /// Faded by the weight of the host's stream.
+    /// Faded with the weight of the host's stream.
     Fade(Blend),
 }
 
 impl ActiveLayer {
-    /// Computes the layer of record number `number`, which has been checked.
+    /// Computes the layer of record `number`, which has been checked.
     pub(crate) fn new(record: &Record, number: u8, preparation: &mut Preparation) -> Result<Self, Refusal> {
         let region = ActiveRegion::new(&record.region).ok_or(Refusal::FeatureDisabled { layer: number })?;
         let coefficients = record.layer.prepare(number, preparation)?;

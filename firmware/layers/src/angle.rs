@@ -1,11 +1,11 @@
-//! A fast angle in turns: the same bits everywhere, in at most 39 instructions on a Cortex-M4F; `libm::atan2f` takes 90
-//! (`m4f.angle` and `m4f.angle_libm` of `cargo xtask bench`).
+//! A fast angle in turns with identical bits on all platforms, in at most 39 instructions on a Cortex-M4F;
+//! `libm::atan2f` takes 90 (`m4f.angle` and `m4f.angle_libm` of `cargo xtask bench`).
 #![allow(dead_code, reason = "whether it is used depends on the features that are on")]
 
-/// Nearer to the origin, m, the angle is 0.
+/// Distance from the origin, m, below which the angle is 0.
 const LEAST_M: f32 = 1e-12;
 
-// Odd polynomial for atan(x) / (2 pi) on [0, 1]: least largest error, 2.7e-7 before rounding.
+// Odd polynomial for atan(x) / (2 pi) on [0, 1] with the smallest maximum error, 2.7e-7 before rounding.
 const C1: f32 = 0.159_151_32;
 const C3: f32 = -0.052_938_566;
 const C5: f32 = 0.030_802_907;

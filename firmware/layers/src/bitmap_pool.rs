@@ -2,13 +2,13 @@
 
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// Bytes for bitmaps on the smallest board, including those being uploaded; 0 without the feature `bitmap`.
+/// Bytes for bitmaps on the smallest board, including bitmaps being uploaded; 0 without the feature `bitmap`.
 pub const BITMAP_POOL_LEN: usize = if cfg!(feature = "bitmap") { 64 * 1024 } else { 0 };
 
-/// Samples of bitmaps, shared between the session, which writes, and the tick, which reads.
+/// Samples of bitmaps, written by the session and read by the tick.
 ///
-/// Every byte is an atomic, which costs nothing on a Cortex-M and needs no `unsafe`.
-/// The session writes only to bytes that no playing scene reads.
+/// Every byte is an atomic, which costs nothing on a Cortex-M and needs no `unsafe`. The session writes only bytes that
+/// no playing scene reads.
 pub struct BitmapPool {
     bytes: [AtomicU8; BITMAP_POOL_LEN],
 }
@@ -25,7 +25,7 @@ impl BitmapPool {
     }
 
     /// The sample at an offset. The offset wraps at the pool's length, a power of two, which replaces a bounds check;
-    /// no bitmap reaches beyond the end.
+    /// no bitmap extends beyond the end.
     #[inline]
     pub fn sample(&self, offset: usize) -> u8 {
         const { assert!(BITMAP_POOL_LEN == 0 || BITMAP_POOL_LEN.is_power_of_two()) };

@@ -1,18 +1,18 @@
-//! How a layer is combined with the layers before it.
+//! Blending of a layer with the layers below.
 
 use crate::interval::{Interval, Number};
 
-/// How a layer is combined with the layers before it.
+/// How a layer is combined with the layers below.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// It replaces them.
+    /// Replaces them.
     #[default]
     Replace,
-    /// It is added to them.
+    /// Adds to them.
     Add,
-    /// They are multiplied by it: its numbers are dimensionless factors.
+    /// Multiplies them: its numbers are dimensionless factors.
     Multiply,
-    /// The larger of the two values is used.
+    /// Uses the larger of the two values.
     Max,
 }
 
@@ -54,8 +54,8 @@ impl Blend {
         }
     }
 
-    /// The interval after a layer is blended over those below it. Unless the layer `always` acts, what is below counts
-    /// as well.
+    /// The interval after a layer is blended over the layers below. Unless the layer `always` acts, the interval below
+    /// is included.
     pub fn of_intervals<T: Number>(self, below: Interval<T>, own: Interval<T>, always: bool) -> Interval<T> {
         let blended = match self {
             Self::Replace => own,

@@ -1,9 +1,9 @@
 //! The largest target friction of a scene, from the bounds of its layers.
 //!
-//! The host's compiler uses this; a board does not. [`electric_friction_max_n`] works cell by cell of the scene's grid,
-//! in the order and in the `f32` operations of the tick: rounding is monotone, so no sum or product of the tick leaves
+//! Used by the host's compiler, not by a board. [`electric_friction_max_n`] works cell by cell on the scene's grid, in
+//! the order and with the `f32` operations of the tick. Rounding is monotone, so no sum or product of the tick leaves
 //! the interval of the same operation. Only rounding within a layer needs a margin, [`ROUNDING`]. There is no lower
-//! bound: every ramp takes the friction down to zero, and must be smooth there.
+//! bound, since every ramp takes the friction down to zero, and must be smooth there.
 
 use crate::grid::Grid;
 use crate::header::{Header, upper_half_rounded_up};
@@ -12,15 +12,15 @@ use crate::point::Point;
 use crate::record::Record;
 use crate::region::Region;
 
-/// How far a layer may exceed the numbers in its record, relative to the larger of them: a cosine may be a millionth
-/// above 1, and a sum is rounded a few times.
+/// Largest excess of a layer over the numbers in its record, relative to the larger of them: a cosine may be a
+/// millionth above 1, and a sum is rounded a few times.
 const ROUNDING: f32 = 4e-6;
 
 const NOTHING: Interval<f32> = Interval { low: 0.0, high: 0.0 };
 
 /// The largest electric friction of a scene at any place, time and speed, N, rounded up to the precision of the header
-/// ([`Header::electric_friction_max_n`]); `None` if it has no finite bound. Only valid if the host does not change a
-/// layer while the scene plays.
+/// ([`Header::electric_friction_max_n`]); `None` if it has no finite bound. Only valid if the host does not change
+/// layers during the play.
 pub fn electric_friction_max_n(header: &Header, records: &[Record], points: &[Point]) -> Option<f32> {
     let mut grid = Grid::EMPTY;
     grid.reset(header.screen_width_m, header.screen_height_m);
@@ -36,8 +36,8 @@ pub fn electric_friction_max_n(header: &Header, records: &[Record], points: &[Po
     Some(stored_n).filter(|max_n| max_n.is_finite())
 }
 
-/// The interval after blending a layer over the interval below it. Includes the case that the layer does not act at the
-/// place.
+/// The interval after blending a layer over the interval below it, including the case that the layer does not act
+/// there.
 fn over(record: &Record, points: &[Point], below: Interval<f32>) -> Interval<f32> {
     let own = Interval::of([record.gain]).times(rounded_outward(record.layer.bounds(points)));
     let is_streamed = record.layer.is_streamed();

@@ -10,10 +10,10 @@ use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, range};
 use crate::prepare::{Preparation, no_room, ticks};
 
-/// A short pulse of friction: `height (1 - t / decay)^2` until `decay` has passed.
+/// A short friction pulse: `height (1 - t / decay)^2` until `decay` has passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Click {
-    /// Electric friction at its beginning, N; 0 for no click.
+    /// Initial electric friction, N; 0 for no click.
     pub height_n: f32,
     /// Duration, s.
     pub decay_s: f32,
@@ -43,17 +43,17 @@ impl Click {
         self.height_n.abs() > 0.0
     }
 
-    /// Bounds of what the click adds to a layer's friction.
+    /// Bounds of the friction added by the click.
     pub(crate) fn bounds(&self) -> Interval<f32> {
         Interval::of([0.0, self.height_n])
     }
 
-    /// Bytes that it takes in the scene's tables.
+    /// Bytes of the click in the scene's tables.
     pub(crate) fn table_bytes(&self) -> usize {
         if self.is_felt() { size_of::<ClickCoefficients>() } else { 0 }
     }
 
-    /// Adds the click of layer number `layer` to the scene's tables; `None` when there is no click.
+    /// Adds the click of layer `layer` to the scene's tables; `None` without a click.
     pub(crate) fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Option<ClickNumber>, Refusal> {
         if !self.is_felt() {
             return Ok(None);
@@ -66,7 +66,7 @@ impl Click {
 }
 
 impl ClickNumber {
-    /// Electric friction of the click when the finger is on one side of a line, or `beyond` it.
+    /// Electric friction of the click for a finger on one side of a line, or `beyond` it.
     #[inline]
     pub(crate) fn across(self, beyond: bool, context: &mut Context) -> f32 {
         let Some((click, slot)) = self.find(context) else { return 0.0 };
@@ -75,7 +75,7 @@ impl ClickNumber {
         self.advance(&click, slot, crossed, context)
     }
 
-    /// Electric friction of the click when the finger is inside its region.
+    /// Electric friction of the click for a finger inside its region.
     #[inline]
     pub(crate) fn inside(self, context: &mut Context) -> f32 {
         let Some((click, slot)) = self.find(context) else { return 0.0 };
@@ -94,7 +94,7 @@ impl ClickNumber {
         let (clicks, tick) = (&mut *context.clicks, context.inputs.tick);
         slot.evaluation = clicks.evaluation;
         if !clicks.unbroken {
-            // A lift ends the clicks of the touch before it.
+            // A lift ends the clicks of the previous touch.
             slot.started_at_tick = None;
         }
         if starts && clicks.unbroken {

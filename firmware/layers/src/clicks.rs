@@ -1,7 +1,7 @@
-//! What the clicks of a scene have in its tables, and their state between ticks.
+//! Coefficients of a scene's clicks, and their state between ticks.
 #![cfg_attr(not(feature = "edge"), allow(dead_code, reason = "only edges and buttons click"))]
 
-/// Most edges and buttons of a scene that click.
+/// Largest number of edges and buttons with a click in a scene.
 pub const CLICKS_MAX: usize = if cfg!(feature = "edge") { 16 } else { 0 };
 
 /// A layer's click in the scene's tables.
@@ -12,12 +12,12 @@ pub(crate) struct ClickCoefficients {
     pub(crate) per_tick: f32,
 }
 
-/// Number of a layer's click in the scene's tables, and of its state in the [`Clicks`].
+/// Index of a layer's click in the scene's tables, and of its state in the [`Clicks`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ClickNumber(pub(crate) u8);
 
-/// The state of all clicks: where the finger was at the previous evaluation. It belongs to the tick; coefficients do
-/// not change.
+/// State of all clicks: the position of the finger at the previous evaluation. It belongs to the tick; coefficients are
+/// constant.
 ///
 /// The state counts evaluations of the scene instead of ticks, so that a tick without an evaluation does not hide a
 /// crossing.
@@ -25,7 +25,7 @@ pub(crate) struct ClickNumber(pub(crate) u8);
 pub struct Clicks {
     /// Evaluations of the scene, modulo 2^32.
     pub(crate) evaluation: u32,
-    /// The finger was on the screen at the previous evaluation, and has not been lifted since.
+    /// Whether the finger was on the screen at the previous evaluation, and has not been lifted since.
     pub(crate) unbroken: bool,
     touching: bool,
     pub(crate) slots: [Slot; CLICKS_MAX],
@@ -34,7 +34,7 @@ pub struct Clicks {
 /// The state of one click.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
-    /// The last evaluation of this layer, and on which side of its line the finger was.
+    /// The last evaluation of this layer, and the side of its line on which the finger was.
     pub(crate) evaluation: u32,
     pub(crate) beyond: bool,
     /// The click's first tick, while it lasts.
@@ -42,7 +42,7 @@ pub(crate) struct Slot {
 }
 
 impl Clicks {
-    /// Initial state: no click is under way, and there was no finger.
+    /// Initial state: no click in progress, and no finger.
     pub const NONE: Self = Self {
         evaluation: 0,
         unbroken: false,

@@ -1,4 +1,4 @@
-//! The evaluation context: everything besides its own coefficients that the evaluation of a layer depends on.
+//! The evaluation context: everything that the evaluation of a layer depends on besides its coefficients.
 
 use crate::bitmap_pool::BitmapPool;
 use crate::clicks::Clicks;
@@ -9,7 +9,7 @@ use crate::tables::Tables;
 pub struct Inputs {
     /// Estimated position of the finger, from the screen's top left corner, in m.
     pub(crate) place_m: [f32; 2],
-    /// The same in the integer steps of rectangles.
+    /// The place in the integer steps of rectangles.
     pub(crate) place_steps: [i32; 2],
     /// Ticks since power-on, modulo 2^32.
     pub(crate) tick: u32,
@@ -29,7 +29,7 @@ impl Inputs {
     }
 }
 
-/// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm: a tick compares integers faster than `f32`. All
+/// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm, since a tick compares integers faster than `f32`. All
 /// coordinates of a scene are within 4 m.
 pub(crate) const STEPS_PER_M: f32 = (1 << 28) as f32;
 

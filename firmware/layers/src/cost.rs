@@ -2,10 +2,11 @@
 //! numbers, so that the board accepts what the compiler accepts. The limit of a tick is
 //! [`BoardLimits::tick_cycles_max`](frixel_wire::hello::BoardLimits::tick_cycles_max).
 //!
-//! The module `measured` holds the cost of every kind and region in **core cycles**, with a memory without wait states.
-//! For the Cortex-M4F they are the cycles of each instruction by its class (Cortex-M4 technical reference, Arm 100166,
-//! tables 3-1 and 7-1), for the Cortex-M0+ its instructions times a bound on the cycles of each. The file of each kind
-//! adds up those that apply to it. [`FLASH_WAIT_PERCENT`] turns core cycles into cycles on boards that run from flash.
+//! The module `measured` holds the cost of every kind and region in **core cycles**, for memory without wait states.
+//! For the Cortex-M4F, they are the cycles of each instruction by class (Cortex-M4 technical reference, Arm 100166,
+//! tables 3-1 and 7-1); for the Cortex-M0+, the number of instructions times a bound on the cycles of each. Each kind's
+//! file adds up the costs that apply to it. [`FLASH_WAIT_PERCENT`] converts core cycles to cycles on boards that run
+//! from flash.
 
 use core::ops::{Add, Mul};
 
@@ -29,7 +30,7 @@ compile_error!(
 
 /// Core cycles on each core.
 ///
-/// Without the feature `every-core`, which images for a Cortex-M4F leave out, they are those of that core alone.
+/// Without the feature `every-core`, which images for a Cortex-M4F omit, they apply to that core only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
     cortex_m4f: u32,
@@ -50,7 +51,7 @@ impl Cost {
         }
     }
 
-    /// Core cycles on this core; [`u32::MAX`], more than any board takes, for one whose costs were left out.
+    /// Core cycles on this core; [`u32::MAX`], more than any board accepts, for a core whose costs are omitted.
     pub const fn on(self, core: Core) -> u32 {
         match core {
             Core::CortexM4f => self.cortex_m4f,
@@ -86,11 +87,11 @@ impl Mul<u32> for Cost {
     }
 }
 
-/// Cycles for 100 core cycles when the tick runs from flash. **Assumed**; not measured on a board yet.
+/// Cycles per 100 core cycles if the tick runs from flash. **Assumed**; not measured on a board yet.
 ///
-/// An STM32G474 at 170 MHz reads flash with 4 wait states, behind a cache of 1 KiB for instructions. Code that stays in
-/// the cache does not wait; code that runs only once is prefetched, and waits for up to one cycle an instruction. A
-/// tick has both: its loop over layers stays in the cache, the rest runs once.
+/// An STM32G474 at 170 MHz reads flash with 4 wait states, with an instruction cache of 1 KiB. Code in the cache does
+/// not wait; code that runs only once is prefetched, and waits for up to one cycle per instruction. A tick has both:
+/// its loop over layers stays in the cache, and the rest runs once.
 pub const FLASH_WAIT_PERCENT: u32 = 125;
 
 /// The place in a scene at which a tick takes the longest.
@@ -103,15 +104,15 @@ pub struct Worst {
 }
 
 impl Worst {
-    /// No place: the initial value of a search.
+    /// Initial value of a search, without a place.
     pub const NOWHERE: Self = Self { core_cycles: 0, cell: Cell { x_m: 0.0, y_m: 0.0, layers: [0; 2] } };
 
-    /// Cycles of the longest tick on the core that it was found for, including flash wait states.
+    /// Cycles of the longest tick on the core of the search, including flash wait states.
     pub const fn cycles(&self, core: Core) -> u32 {
         cycles(core, self.core_cycles)
     }
 
-    /// Refuses a scene whose longest tick is estimated at more than `cycles_max` on the core that it was found for.
+    /// Refuses a scene whose longest tick is estimated at more than `cycles_max` on the core of the search.
     pub fn check(&self, core: Core, cycles_max: u32) -> Result<(), Refusal> {
         let Cell { x_m, y_m, .. } = self.cell;
         let cycles = self.cycles(core);
@@ -119,10 +120,10 @@ impl Worst {
     }
 }
 
-/// Name and core cycles of each layer that was measured, or of the part of it that another does not have.
+/// Name and core cycles of each measured layer, or of the part in which it differs from another one.
 pub const MEASURED_LAYERS: &[(&str, Cost)] = measured::LAYERS;
 
-/// Converts core cycles to cycles, rounded up: of code that runs from flash on a Cortex-M4F, and from RAM on a
+/// Converts core cycles to cycles, rounded up, for code that runs from flash on a Cortex-M4F, and from RAM on a
 /// Cortex-M0+.
 pub const fn cycles(core: Core, core_cycles: u32) -> u32 {
     match core {
@@ -131,19 +132,19 @@ pub const fn cycles(core: Core, core_cycles: u32) -> u32 {
     }
 }
 
-/// The costs of a scene's layers, from which the cost of a tick at any place follows.
+/// The costs of a scene's layers, which determine the cost of a tick at any place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerCosts {
-    /// Core cycles of a tick with no layer near the finger, apart from `elsewhere`.
+    /// Core cycles of a tick with no layer near the finger, excluding `elsewhere`.
     empty: u32,
-    /// Core cycles that layers add wherever the finger is.
+    /// Core cycles added by layers at any position of the finger.
     elsewhere: u32,
-    /// Core cycles that each layer adds near the finger: far fewer than 65,536 each.
+    /// Core cycles added by each layer near the finger, each far below 65,536.
     layers: [u16; RECORDS_MAX],
 }
 
 impl LayerCosts {
-    /// A scene with this header and without layers, on a board with this core.
+    /// Costs of a scene with this header and without layers, on a board with this core.
     pub fn new(header: &Header, core: Core) -> Self {
         Self { empty: of_empty_scene(header).on(core), elsewhere: 0, layers: [0; RECORDS_MAX] }
     }
@@ -153,7 +154,7 @@ impl LayerCosts {
         if let Some(cost) = self.layers.get_mut(usize::from(number)) {
             *cost = u16::try_from(of_record(record, points).on(core)).unwrap_or(u16::MAX);
         }
-        // Counts once for all layers of the kind. Only one kind has it: a second one would need a sum over kinds.
+        // Counts once for all layers of the kind. Only one kind has it; a second one would need a sum over kinds.
         self.elsewhere = self.elsewhere.max(record.layer.cost_elsewhere().on(core));
     }
 
@@ -173,7 +174,7 @@ impl LayerCosts {
     }
 }
 
-/// Core cycles that a layer adds to a tick with the finger in its region, or near it; `points` are the scene's.
+/// Core cycles added to a tick by a layer with the finger in or near its region; `points` are the scene's.
 pub fn of_record(record: &Record, points: &[Point]) -> Cost {
     record.region.cost(points) + record.layer.cost()
 }

@@ -1,14 +1,14 @@
-//! The empirical law of a finger, as a scene carries it.
+//! The empirical law of a finger in a scene.
 
 use frixel_model::{EmpiricalLaw, LawError, LawPoint};
 
 use crate::point::{POINT_LEN, Point};
 
-/// Most points of a law that this build takes: none without laws.
+/// Largest number of points of a law in this build; 0 without laws.
 pub const LAW_POINTS_MAX: usize = if cfg!(feature = "empirical") { EmpiricalLaw::POINTS_MAX } else { 0 };
 
-/// The numbers of an [`EmpiricalLaw`]: the exponent below its first point, and its points, 1 to [`LAW_POINTS_MAX`].
-/// Whether they are a law is checked at the commit.
+/// The numbers of an [`EmpiricalLaw`]: the exponent below its first point, and its points, 1 to [`LAW_POINTS_MAX`]. The
+/// commit checks whether they form a valid law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerLaw {
     exponent: f32,
@@ -59,12 +59,12 @@ impl FingerLaw {
         self.count
     }
 
-    /// The points, from the least voltage on.
+    /// The points, by ascending voltage.
     pub fn points(&self) -> &[LawPoint] {
         self.points.get(..usize::from(self.count)).unwrap_or_default()
     }
 
-    /// Voltage of the last point, V rms: the law ends there.
+    /// Voltage of the last point, V rms, at which the law ends.
     pub fn voltage_max_v_rms(&self) -> f32 {
         self.points().last().map_or(0.0, |last| last.voltage_v_rms)
     }
@@ -73,7 +73,7 @@ impl FingerLaw {
     ///
     /// # Errors
     ///
-    /// The numbers are no law, or the voltage is above that of the last point.
+    /// The numbers do not form a valid law, or the voltage is above the last point's.
     pub fn up_to(&self, voltage_max_v_rms: f32) -> Result<EmpiricalLaw, LawError> {
         EmpiricalLaw::new(self.exponent, self.points(), voltage_max_v_rms)
     }

@@ -1,5 +1,5 @@
-//! A coarse grid over the screen: each cell has a bit for each layer that may act there. With it, a tick evaluates only
-//! the layers near the finger, and compiler and board find the place with the highest cost.
+//! A coarse grid over the screen: each cell has a bit for each layer that may act there. It allows a tick to evaluate
+//! only the layers near the finger, and compiler and board to find the place with the highest cost.
 
 use core::ops::RangeInclusive;
 
@@ -12,7 +12,7 @@ const SIDE: usize = 16;
 /// A set of layers with a bit for each: layers 0 to 31, then layers 32 to 63.
 pub type LayerSet = [u32; 2];
 
-/// For every cell of the screen, the layers that may act there.
+/// The layers that may act in each cell of the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     columns_per_m: f32,
@@ -73,8 +73,8 @@ impl Grid {
         self.cells.fill([0; 2]);
     }
 
-    /// Adds layer number `layer`, below 64, to every cell that its region may touch; `points` are the scene's. Places
-    /// off the screen belong to the cells at its border.
+    /// Adds layer `layer`, below 64, to every cell that its region may touch; `points` are the scene's. Places off the
+    /// screen belong to the border cells.
     pub fn add(&mut self, layer: u8, region: &Region, points: &[Point]) {
         let bit = 1_u64.checked_shl(u32::from(layer)).unwrap_or(0);
         let bits = [bit as u32, (bit >> 32) as u32];

@@ -16,10 +16,10 @@ pub const SCENE_VERSION: u16 = 1;
 /// Bytes of the header.
 pub const HEADER_LEN: usize = 56;
 
-/// Fewest ticks in a half period of the carrier.
+/// Smallest number of ticks in a half period of the carrier.
 pub const HALF_PERIOD_MIN_TICKS: u32 = 4;
-/// Lowest carrier frequency, Hz: charge leaks through skin below about 250 Hz (arXiv 2409.18725); at less than half of
-/// that, the drive has in effect no alternating carrier.
+/// Lowest carrier frequency, Hz. Charge leaks through skin below about 250 Hz (arXiv 2409.18725); below half of that,
+/// the drive effectively has no alternating carrier.
 pub const CARRIER_MIN_HZ: f32 = 125.0;
 /// Shortest and longest host timeout, s.
 pub const HOST_TIMEOUTS_S: [f32; 2] = [0.02, 1.0];
@@ -30,7 +30,7 @@ mod field {
     pub(super) const RECORDS: usize = 2;
     pub(super) const FLAGS: usize = 3;
     pub(super) const NUMBERS: usize = 4;
-    /// Number of the law's points, in the place of the stiffness.
+    /// Number of the law's points, in place of the stiffness.
     pub(super) const LAW_POINTS: usize = 16;
     pub(super) const WAVEFORM: usize = 52;
     pub(super) const POINTS: usize = 53;
@@ -58,7 +58,7 @@ pub struct Header {
     pub screen_width_m: f32,
     /// Height of the screen, m.
     pub screen_height_m: f32,
-    /// Finger radius `R`, m. It, stiffness and gap are zero when there is a `law`.
+    /// Finger radius `R`, m. Radius, stiffness and gap are zero if there is a `law`.
     pub finger_radius_m: f32,
     /// Winkler-Fuss stiffness `k`, Pa/m.
     pub stiffness_pa_per_m: f32,
@@ -80,35 +80,35 @@ pub struct Header {
     pub host_timeout_s: f32,
     /// Shape of the carrier.
     pub waveform: Waveform,
-    /// The tick estimates the finger's current position from late samples. Otherwise it uses the last sample unchanged.
+    /// Whether the tick estimates the finger's current position from late samples. Otherwise it uses the last sample.
     pub prediction: bool,
     /// Which finger is followed when the host reports several.
     pub leader: Leader,
-    /// The host may not change the layers while the scene plays; the board refuses a change.
+    /// Whether layer changes are refused while the scene plays.
     pub layers_fixed: bool,
-    /// The scene's largest target friction (electric friction), N: the board's table ends there, and friction above it
-    /// is counted as saturated. `None`: the table ends at the friction for the largest voltage.
+    /// The scene's largest target friction (electric friction), N. The board's table ends there, and friction above it
+    /// counts as saturated. `None`: the table ends at the friction for the largest voltage.
     ///
     /// A scene stores the upper half of the number's bits, rounded up: up to 1 % more.
     pub electric_friction_max_n: Option<f32>,
     /// The empirical law of the finger on the screen, under the normal load; `None` if radius, stiffness and gap
-    /// describe it.
+    /// describe the finger.
     pub law: Option<FingerLaw>,
 }
 
-/// Which of several fingers is followed, since one electrode gives one effect.
+/// Which of several fingers is followed, since one electrode renders one effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Leader {
-    /// Of the fingers on the screen, the one that touched it first.
+    /// The finger on the screen that touched it first.
     #[default]
     First,
-    /// The one that touched the screen last.
+    /// The finger that touched the screen last.
     Latest,
 }
 
 impl Header {
-    /// The bytes of the header of a scene with `records` records and `points` points. Beside a law there is no room for
-    /// radius, stiffness and gap; [`Self::check`] refuses a stiffness and a gap that are not zero.
+    /// The bytes of the header of a scene with `records` records and `points` points. With a law, there is no room for
+    /// radius, stiffness and gap; [`Self::check`] refuses a nonzero stiffness or gap.
     pub fn write(&self, records: u8, points: u8) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];
         let flags = [
@@ -128,7 +128,7 @@ impl Header {
         put_at(&mut bytes, field::FLAGS, [flags]);
         let mut header = *self;
         if let Some(law) = self.law() {
-            // Their fields have the law's numbers.
+            // Their fields hold the law's numbers.
             header.finger_radius_m = law.exponent();
             header.stiffness_pa_per_m = f32::from_bits(u32::from(law.point_count()));
             header.effective_gap_m = 0.0;
@@ -221,7 +221,7 @@ impl Header {
         law: None,
     };
 
-    /// The law; never one in a build without laws, so that the compiler omits what it would need.
+    /// The law; always `None` in a build without laws, so that the compiler omits the code for them.
     #[inline]
     pub fn law(&self) -> Option<&FingerLaw> {
         self.law.as_ref().filter(|_| cfg!(feature = "empirical"))
@@ -246,13 +246,13 @@ impl Header {
     }
 
     /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers. The knots of a law depend on
-    /// the largest voltage: where the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a
-    /// header with the lower voltage.
+    /// the largest voltage: if the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a header
+    /// with the lower voltage.
     ///
     /// # Errors
     ///
-    /// A parameter of the contact model is out of range, or the `law` is none. Neither happens for a scene that a board
-    /// took.
+    /// A parameter of the contact model is out of range, or the `law` is invalid. Neither happens for a scene accepted
+    /// by a board.
     pub fn friction_law(&self) -> Result<FrictionLaw, ParameterError> {
         let (friction_coefficient, normal_load_n) =
             (f64::from(self.friction_coefficient), f64::from(self.normal_load_n));
@@ -273,7 +273,7 @@ impl Header {
         Contact::new(&finger, f64::from(self.effective_gap_m))?.under_load(normal_load_n).map(FrictionLaw::Contact)
     }
 
-    /// Checks that every number is within the ranges of a board with these limits and `tick_hz` ticks a second.
+    /// Checks that every number is within the ranges of a board with these limits and the tick rate `tick_hz`.
     pub fn check(&self, limits: &BoardLimits, tick_hz: u32) -> Result<(), ConfigRefusal> {
         let carrier_max_hz = tick_hz as f32 / (2.0 * HALF_PERIOD_MIN_TICKS as f32);
         let voltage_max_v_peak = limits.voltage_max_v_peak;

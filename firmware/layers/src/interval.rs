@@ -1,12 +1,12 @@
-//! Intervals of numbers: the bounds of what layers give.
+//! Intervals of numbers: bounds of layers.
 
 use core::ops::{Add, Mul};
 
 /// `f32` or `f64`.
 pub trait Number: Copy + PartialOrd + Add<Output = Self> + Mul<Output = Self> {
-    /// The largest number, above all others.
+    /// Positive infinity.
     const INFINITY: Self;
-    /// The least number.
+    /// Negative infinity.
     const NEG_INFINITY: Self;
 }
 
@@ -61,7 +61,7 @@ impl<T: Number> Interval<T> {
     }
 }
 
-/// Returns not-a-number if an argument is, unlike `f32::min`: it must not be lost in a bound.
+/// Returns NaN if an argument is NaN, unlike `f32::min`, since a bound must not lose it.
 fn lesser<T: PartialOrd + Copy>(one: T, other: T) -> T {
     if one < other || is_nan(one) { one } else { other }
 }

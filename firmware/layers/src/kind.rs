@@ -1,4 +1,4 @@
-//! What a kind of layer implements.
+//! The interface of a kind of layer.
 
 use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::SceneError;
@@ -18,8 +18,8 @@ use crate::region::{ActiveRegion, Region};
 pub(crate) trait Kind: Parameters + Copy {
     /// The coefficients that the tick evaluates.
     type Coefficients: Evaluate;
-    /// Core cycles that the kind adds to every tick of a scene with at least one such layer, wherever the finger is.
-    /// They count once for all layers of the kind.
+    /// Core cycles added by the kind to every tick of a scene with at least one such layer, at any position of the
+    /// finger. They count once for all layers of the kind.
     const COST_ELSEWHERE: Cost = Cost::ZERO;
     /// Whether the layer plays the host's stream, and fades with it.
     const STREAMED: bool = false;
@@ -30,20 +30,20 @@ pub(crate) trait Kind: Parameters + Copy {
         Ok(())
     }
 
-    /// Checks parameters that depend on one another, and the points that the layer refers to. The range of each
-    /// parameter has already been checked.
+    /// Checks relations between parameters, and the points that the layer refers to. The range of each parameter has
+    /// already been checked.
     fn check_relations(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
         let _ = (points, layer);
         Ok(())
     }
 
-    /// Most core cycles of an evaluation.
+    /// Largest number of core cycles of an evaluation.
     fn cost(&self) -> Cost;
 
     /// Bounds of the layer's friction before its gain, in N, or as a factor.
     fn bounds(&self, points: &[Point]) -> Interval<f32>;
 
-    /// CRC-32 of the bitmap that the layer uses; `None` without a bitmap.
+    /// CRC-32 of the layer's bitmap; `None` without a bitmap.
     fn bitmap_crc32(&self) -> Option<u32> {
         None
     }
@@ -53,17 +53,16 @@ pub(crate) trait Kind: Parameters + Copy {
         None
     }
 
-    /// Bytes that the layer takes in the scene's tables.
+    /// Bytes of the layer in the scene's tables.
     fn table_bytes(&self) -> usize {
         0
     }
 
-    /// Computes the coefficients of layer number `layer`. Its parameters have been checked.
+    /// Computes the coefficients of layer `layer`. Its parameters have been checked.
     fn prepare(&self, layer: u8, preparation: &mut Preparation) -> Result<Self::Coefficients, Refusal>;
 }
 
-/// Cost of the layer that the benchmark counts under this name: `tick_NAME_alone`. 0 until it has been measured,
-/// which the tests of the samples find.
+/// Cost of the layer in the benchmark `tick_NAME_alone`. 0 until it is measured, which the tests of the samples detect.
 pub(crate) const fn measured_cost(name: &str) -> Cost {
     let mut number = 0;
     while number < measured::LAYERS.len() {
@@ -76,7 +75,7 @@ pub(crate) const fn measured_cost(name: &str) -> Cost {
     Cost::ZERO
 }
 
-/// `==` of slices, which no constant can use.
+/// `==` of slices, for constants.
 const fn is_same(one: &[u8], other: &[u8]) -> bool {
     let mut at = 0;
     while at < one.len() && at < other.len() && one[at] == other[at] {
@@ -85,24 +84,23 @@ const fn is_same(one: &[u8], other: &[u8]) -> bool {
     at == one.len() && at == other.len()
 }
 
-/// Coefficients of a layer, as the tick evaluates them.
+/// Coefficients of a layer, evaluated by the tick.
 pub(crate) trait Evaluate: Copy {
-    /// Whether to inline the evaluation, because a call would cost more than the evaluation itself.
+    /// Whether to inline the evaluation, because a call would cost more than the evaluation.
     const IN_LINE: bool = false;
 
     /// Electric friction, in N, before the gain; or a factor. The finger is inside `region`.
     fn electric_friction_n(&self, region: &ActiveRegion, context: &mut Context) -> f32;
 
-    /// The host has switched the layer on; `tick` is the first one with it.
+    /// Called when the host switches the layer on; `tick` is its first tick.
     #[inline]
     fn begin(&mut self, tick: u32) {
         let _ = tick;
     }
 }
 
-/// Evaluates one kind without inlining: otherwise a loop over layers would first load the constants of all kinds.
-///
-/// The function is generic, so that it is compiled with the crate that calls it.
+/// Evaluates one kind without inlining; otherwise a loop over layers would first load the constants of all kinds. The
+/// function is generic, so that it is compiled with the crate that calls it.
 #[inline(never)]
 fn call<C: Evaluate>(coefficients: &C, region: &ActiveRegion, context: &mut Context) -> f32 {
     coefficients.electric_friction_n(region, context)

@@ -1,4 +1,4 @@
-//! The kinds of layer: the list from which everything that covers all kinds is generated.
+//! The kinds of layer: the list from which all code that covers all kinds is generated.
 
 #[cfg(feature = "bitmap")]
 pub(crate) mod bitmap;
@@ -39,8 +39,8 @@ use crate::prepare::Preparation;
 use crate::region::{ActiveRegion, Region};
 
 /// Generates the enums of all kinds, and the functions that dispatch on them, from one list: the kind's number in
-/// records, its type and module, its Cargo feature, and the number of its bit in the features of the hello. Numbers are
-/// never used again.
+/// records, its type and module, its Cargo feature, and the number of its bit in the hello's features. Numbers are
+/// never reused.
 macro_rules! kinds {
     ($(
         $(#[doc = $doc:literal])*
@@ -48,14 +48,14 @@ macro_rules! kinds {
     )*) => {
         $( $(#[cfg(feature = $feature)])? pub use $module::$kind; )*
 
-        /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; dimensionless factors
-        /// in a layer with multiplicative blend.
+        /// Kind and parameters of a layer. Frictions are electric, in newtons, before the gain; with the multiplicative
+        /// blend, they are dimensionless factors.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Layer {
             $( $(#[doc = $doc])* $(#[cfg(feature = $feature)])? $kind($kind), )*
         }
 
-        /// Coefficients of a layer. Its tag is a byte of its own, so that the tick finds the kind at once.
+        /// Coefficients of a layer. Its tag is a separate byte, so that the tick finds the kind at once.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[repr(u8)]
         pub(crate) enum Coefficients {
@@ -136,7 +136,7 @@ macro_rules! kinds {
                 match self { $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => evaluate(kind, region, context), )* }
             }
 
-            /// The host has switched the layer on; `tick` is the first one with it.
+            /// Called when the host switches the layer on; `tick` is its first tick.
             #[inline]
             pub(crate) fn begin(&mut self, tick: u32) {
                 match self { $( $(#[cfg(feature = $feature)])? Self::$kind(kind) => Evaluate::begin(kind, tick), )* }
@@ -148,7 +148,7 @@ macro_rules! kinds {
         const LAYOUTS: &[(&str, &[(&str, usize, usize)])] =
             &[$( $(#[cfg(feature = $feature)])? (stringify!($kind), <$kind as Parameters>::LAYOUT), )*];
 
-        /// Calls a function of whichever kind a layer is.
+        /// Calls a function on the kind of a layer.
         macro_rules! of_kind {
             ($layer:expr, $named:ident => $call:expr) => {
                 match $layer { $( $(#[cfg(feature = $feature)])? Layer::$kind($named) => $call, )* }
@@ -174,17 +174,17 @@ kinds! {
     7 => Vibration in vibration, feature "vibration" bit 7;
     /// A curve over sliding speed.
     8 => Speed in speed, feature "speed" bit 8;
-    /// What the host sends while the scene plays.
+    /// Samples streamed by the host during the play.
     9 => Stream in stream, feature "stream" bit 9;
-    /// Rings around a middle.
+    /// Rings around a centre.
     10 => Rings in rings, feature "rings" bit 11;
-    /// Spokes around a middle.
+    /// Spokes around a centre.
     11 => Spokes in spokes, feature "spokes" bit 12;
     /// Friction that depends on the direction of the slide.
     12 => Direction in direction, feature "direction" bit 14;
 }
 
-// The session answers for streams, too.
+// The session also handles streams.
 const _: () = assert!(frixel_wire::hello::feature::STREAM == 1 << 9);
 
 /// The Cargo feature of a kind of layer. Several kinds may share one.
@@ -199,7 +199,7 @@ pub struct KindFeature {
 }
 
 impl Layer {
-    /// CRC-32 of the bitmap that the layer uses; `None` without a bitmap.
+    /// CRC-32 of the layer's bitmap; `None` without a bitmap.
     pub fn bitmap_crc32(&self) -> Option<u32> {
         of_kind!(self, kind => Kind::bitmap_crc32(kind))
     }
@@ -209,7 +209,7 @@ impl Layer {
         of_kind!(self, kind => Kind::click(kind)).filter(Click::is_felt)
     }
 
-    /// Bounds of the layer's friction before its gain and apart from rounding, in N, or as a factor; `points` are the
+    /// Bounds of the layer's friction before its gain and without rounding, in N, or as a factor; `points` are the
     /// scene's.
     pub fn bounds(&self, points: &[Point]) -> Interval<f32> {
         of_kind!(self, kind => Kind::bounds(kind, points))
@@ -249,7 +249,7 @@ mod tests {
         for (kind, layout) in LAYOUTS {
             let mut owners = [""; RECORD_LEN];
             for (name, offset, len) in *layout {
-                // After the fields that all records have in common, or the form byte.
+                // After the common fields of all records, or the form byte.
                 assert!(*offset >= GAIN_AT + 4 || (*offset, *len) == (FORM_AT, 1), "{kind}: {name}");
                 for owner in &mut owners[*offset..offset + len] {
                     assert_eq!(std::mem::replace(owner, *name), "", "{kind}: {name}");

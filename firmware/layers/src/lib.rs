@@ -2,18 +2,18 @@
 //!
 //! # Inputs and outputs
 //!
-//! The host's compiler makes a [`Header`], [`Record`]s and [`Point`]s, and writes them to the bytes that are uploaded.
-//! It computes their cost with [`cost`], and their largest electric friction with [`electric_friction_max_n`].
+//! The host's compiler creates a [`Header`], [`Record`]s and [`Point`]s, and writes them to bytes for the upload. It
+//! computes their cost with [`cost`], and their largest electric friction with [`electric_friction_max_n`].
 //!
-//! A board reads the bytes ([`Scene::parse`]). When the scene is committed, it checks the records against the ranges
-//! that a board accepts, and turns them into [`ActiveLayers`], where everything that does not change from tick to tick
-//! is precomputed. At every tick [`ActiveLayers::electric_friction_n`] takes the [`Inputs`] (place and velocity of the
-//! finger, the time, the host's stream), the samples of bitmaps ([`BitmapPool`]) and the state of clicks ([`Clicks`]),
-//! and returns the electric friction under the finger, in newtons.
+//! A board reads the bytes ([`Scene::parse`]). At the commit, it checks the records against the accepted ranges, and
+//! converts them to [`ActiveLayers`], in which everything that is constant during a play is precomputed. In every tick,
+//! [`ActiveLayers::electric_friction_n`] takes the [`Inputs`] (place and velocity of the finger, time, stream sample),
+//! the samples of bitmaps ([`BitmapPool`]) and the state of clicks ([`Clicks`]), and returns the electric friction
+//! under the finger, in newtons.
 //!
-//! Every friction in a scene is **electric friction**: what the drive adds above `mu F_N`, in newtons; in a layer with
-//! multiplicative blend, the same numbers are dimensionless factors. Lengths are in metres from the screen's top left
-//! corner, x to the right, y down. Angles are in turns, from x towards y.
+//! Every friction in a scene is **electric friction**: the friction added by the drive above `mu F_N`, in newtons. With
+//! the multiplicative blend, the same numbers are dimensionless factors. Lengths are in metres from the screen's top
+//! left corner, x to the right, y down. Angles are in turns, from x towards y.
 //!
 //! # How a kind of layer is described
 //!
@@ -25,31 +25,31 @@
 //!   parameters become coefficients;
 //! - its coefficients, with `Evaluate`: the friction at the finger's place.
 //!
-//! `kind.rs` holds the traits. The list at the end of `kinds.rs` gives it its number in records and its Cargo feature;
-//! everything that covers all kinds is generated from that list. Whatever several kinds use has its own module: waves,
-//! clicks, regions, blends, points.
+//! `kind.rs` contains the traits. The list at the end of `kinds.rs` assigns the number in records and the Cargo
+//! feature; all code that covers all kinds is generated from that list. Parts shared by several kinds have their own
+//! modules: waves, clicks, regions, blends, points.
 //!
 //! # Order of the modules
 //!
-//! A module uses those of the lines above its own, and of its own line only those to its left:
+//! A module uses only modules of earlier lines, and modules to its left on the same line:
 //!
-//! 1. numbers: `interval`, `cosine`, `angle`, `square_root`, `measured` (what evaluations cost);
-//! 2. bytes: `layout` (what all records have in common), `parameters`, `point`, `header`;
-//! 3. what an evaluation reads and changes: `bitmap_pool`, `clicks`, `noise_waves`, `tables`, `context`, `prepare`;
+//! 1. numbers: `interval`, `cosine`, `angle`, `square_root`, `measured` (costs of evaluations);
+//! 2. bytes: `layout` (common to all records), `parameters`, `point`, `header`;
+//! 3. inputs and state of an evaluation: `bitmap_pool`, `clicks`, `noise_waves`, `tables`, `context`, `prepare`;
 //! 4. the parts of a layer: `blend`, `region`, `click`, `kind`, `wave`, `kinds`, `record`;
 //! 5. a scene: `scene`, `grid`, `cost`, `bounds`, `active`.
 //!
 //! # Features
 //!
-//! Every Cargo feature is a kind of layer or of region, and all are enabled by default. A board without one of them is
-//! smaller, and refuses a scene that needs it ([`disabled_record`]). [`FEATURES`] are the feature bits in its hello,
-//! and [`KIND_FEATURES`] those of all kinds. A test writes the features of the kinds into the manifests.
+//! Every Cargo feature is a kind of layer or of region, and all are enabled by default. A board without a feature has a
+//! smaller image, and refuses scenes that need it ([`disabled_record`]). [`FEATURES`] are the feature bits in its
+//! hello, and [`KIND_FEATURES`] the bits of all kinds. A test writes the features of the kinds into the manifests.
 //! Constant layers, rectangles, ellipses and all blends are always included.
 //!
 //! # Speed and size
 //!
-//! Functions that the tick calls are `#[inline]`, so that they are compiled with the crate of the tick, which a board
-//! builds for speed. The rest is built for size.
+//! Functions called by the tick are `#[inline]`, so that they are compiled with the tick's crate, which a board builds
+//! for speed. The rest is built for size.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
@@ -116,14 +116,13 @@ pub use wave::Wave;
 
 use frixel_wire::hello::feature;
 
-/// Bits of the hello's features of the kinds of layers and regions, and of empirical laws, whose Cargo features are
-/// enabled.
+/// Feature bits of the hello for the enabled kinds of layers and regions, and for empirical laws.
 pub const FEATURES: u32 = kinds::KIND_FEATURES_ON
     | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 }
     | if cfg!(feature = "empirical") { feature::EMPIRICAL } else { 0 };
 
-/// Name of each feature of the hello, by its bit, in the order of the bits: that of the board's Cargo feature, where
-/// there is one.
+/// Name of each feature of the hello by its bit, in the order of the bits: the board's Cargo feature, where there is
+/// one.
 pub fn feature_names() -> impl Iterator<Item = (u32, &'static str)> {
     let all = || KIND_FEATURES.iter().map(|kind| (kind.bit, kind.name)).chain(feature::NAMES);
     (0..u32::BITS).filter_map(move |bit| all().find(|(named, _)| *named == 1 << bit))

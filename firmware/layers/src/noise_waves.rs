@@ -17,8 +17,8 @@ pub(crate) struct PlaneWave {
 }
 
 impl Waves {
-    /// Directions are spread over half a turn and wave numbers over the band, each divided into eight parts, one for
-    /// each wave: no seed leaves a part empty.
+    /// Directions are spread over half a turn, and wave numbers over the band. Each range is divided into eight parts,
+    /// one per wave, so that every seed covers all parts.
     pub(crate) fn new(seed: u32, wavelength_min_m: f32, wavelength_max_m: f32) -> Self {
         let (least, largest) = (1.0 / wavelength_max_m, 1.0 / wavelength_min_m);
         let mut waves = [PlaneWave::default(); WAVES];
@@ -36,7 +36,7 @@ impl Waves {
     }
 }
 
-/// The pseudo-random number, from 0 to 1, of a seed and a wave: `draw` is 1 to 3. The hash is "lowbias32" of C.
+/// The pseudo-random number, from 0 to 1, of a seed and a wave; `draw` is 1 to 3. The hash is "lowbias32" of C.
 /// Wellons' hash-prospector.
 fn fraction(seed: u32, wave: u32, draw: u32) -> f32 {
     let mut v = seed.wrapping_add(0x9e37_79b9_u32.wrapping_mul(3 * wave + draw));

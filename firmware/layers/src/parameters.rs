@@ -1,5 +1,5 @@
-//! Declarations of the parameters of a kind of layer: each one once, with its type, its offset in the record, the range
-//! that a board accepts, and its meaning.
+//! Declares each parameter of a kind of layer once, with its type, its offset in the record, its accepted range, and
+//! its meaning.
 
 use frixel_wire::bytes::{get_at, put_at};
 use frixel_wire::message::{ConfigField, ConfigRefusal};
@@ -12,7 +12,7 @@ pub(crate) struct UnknownForm(pub(crate) u8);
 
 /// A type that a parameter can have.
 pub(crate) trait Parameter: Sized {
-    /// Bytes that it takes in a record, not counting the form byte.
+    /// Bytes of the parameter in a record, without the form byte.
     const LEN: usize;
 
     /// Reads the parameter at an offset of a record.
@@ -28,7 +28,7 @@ pub(crate) trait Parameter: Sized {
     }
 }
 
-/// The parameters of a kind. [`parameters!`] implements it.
+/// Parameters of a kind; implemented by [`parameters!`].
 pub(crate) trait Parameters: Sized {
     /// Name, offset and length of each.
     #[cfg(test)]
@@ -44,8 +44,8 @@ pub(crate) trait Parameters: Sized {
     fn check(&self, layer: u8) -> Result<(), ConfigRefusal>;
 }
 
-/// Declares the parameters of a kind of layer: `name: type = offset in range`, with its meaning above it. The range is
-/// a [`Range`], for parameters of type `f32`; other types bring their own.
+/// Declares the parameters of a kind of layer as `name: type = offset in range`, below a doc comment. The range is a
+/// [`Range`] for parameters of type `f32`; other types have their own.
 macro_rules! parameters {
     (
         $(#[$meta:meta])*
@@ -157,7 +157,7 @@ pub(crate) fn put_form(record: &mut RecordBytes, form: u8) {
     put_at(record, FORM_AT, [form]);
 }
 
-/// The range that a board accepts for a parameter. A number outside is refused, never silently clamped.
+/// The accepted range of a parameter. A number outside is refused, never silently clamped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Name of the parameter in a refusal.
@@ -173,9 +173,9 @@ impl Range {
         Self { field, min, max }
     }
 
-    /// Refuses a number outside the range, and not-a-number; `layer` is the layer number for the refusal.
-    // Every range is a constant: inlined, its limits are converted to `f32` by the compiler and not by the processor,
-    // which has no `f64`.
+    /// Refuses a number outside the range, or NaN; `layer` is the layer number for the refusal.
+    // Every range is a constant: if inlined, the compiler converts its limits to `f32` instead of the processor, which
+    // has no `f64`.
     #[allow(clippy::inline_always, reason = "a call would convert both limits in software")]
     #[inline(always)]
     pub fn check(&self, found: f32, layer: u8) -> Result<(), ConfigRefusal> {
@@ -188,8 +188,8 @@ impl Range {
     }
 }
 
-/// Accepts a number from `min` to `max`, and refuses not-a-number; `layer` is the number that a refusal names.
-// Not inlined, because nearly every check calls it.
+/// Accepts a number from `min` to `max`, and refuses NaN; `layer` is the layer number for the refusal.
+// Not inlined, since nearly every check calls it.
 #[inline(never)]
 pub fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> Result<(), ConfigRefusal> {
     if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
@@ -203,7 +203,7 @@ pub mod range {
 
     /// Largest distance from the screen's corner along an axis, m.
     pub const LENGTH_MAX_M: f64 = 2.0;
-    /// Finest stripes and noise, cycles per metre.
+    /// Largest wave number of stripes and noise, cycles per metre.
     const CYCLES_PER_M_MAX: f64 = 2e4;
 
     /// Gain of a layer.
@@ -212,7 +212,7 @@ pub mod range {
     pub const FRICTION_N: Range = Range::new(ConfigField::Friction, -100.0, 100.0);
     /// Left or top end of a region, m.
     pub const REGION_PLACE_M: Range = Range::new(ConfigField::Region, -LENGTH_MAX_M, LENGTH_MAX_M);
-    /// Width or height of a region, m: the inverse is finite, and a rectangle is at least a step wide.
+    /// Width or height of a region, m. Its inverse is finite, and a rectangle is at least one step wide.
     pub const REGION_SIZE_M: Range = Range::new(ConfigField::Region, 4e-9, LENGTH_MAX_M);
     /// Coordinate of a polygon's vertex, m.
     pub const VERTEX_M: Range = REGION_PLACE_M.named(ConfigField::Vertex);
@@ -226,7 +226,7 @@ pub mod range {
     pub const ANGLE_TURNS: Range = Range::new(ConfigField::Angle, -1.0, 1.0);
     /// Corner of a bitmap, m.
     pub const BITMAP_PLACE_M: Range = REGION_PLACE_M.named(ConfigField::BitmapPlacement);
-    /// Distance of a bitmap's samples, m.
+    /// Spacing of a bitmap's samples, m.
     pub const PITCH_M: Range = Range::new(ConfigField::BitmapPlacement, 1e-5, 0.1);
     /// Wavelength, m.
     pub const WAVELENGTH_M: Range = Range::new(ConfigField::Wavelength, 1.0 / CYCLES_PER_M_MAX, LENGTH_MAX_M);
@@ -244,6 +244,6 @@ pub mod range {
     pub const DRIFT_HZ: Range = Range::new(ConfigField::VibrationFrequency, -1000.0, 1000.0);
     /// Sliding speed of a curve's point, m/s.
     pub const SPEED_M_PER_S: Range = Range::new(ConfigField::CurveSpeed, 0.0, 10.0);
-    /// Least distance of a curve's speeds, m/s.
+    /// Smallest spacing of a curve's speeds, m/s.
     pub const SPEED_STEP_MIN_M_PER_S: f64 = 1e-5;
 }

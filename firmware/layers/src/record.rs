@@ -1,7 +1,7 @@
 //! A record: one layer of a scene, 56 bytes. All kinds have region, blend and gain in common.
 //!
-//! Every value has exactly one encoding: bytes that a kind does not use are zero. To check this, parsing a record
-//! writes the value again and compares the bytes.
+//! Every value has exactly one encoding: bytes not used by a kind are zero. To check this, parsing writes the value
+//! again and compares the bytes.
 
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::message::ConfigRefusal;
@@ -19,7 +19,7 @@ use crate::region::{POLYGON, Region};
 pub struct Record {
     /// Where the layer acts.
     pub region: Region,
-    /// How it is combined with the layers before it.
+    /// How it is combined with the layers below.
     pub blend: Blend,
     /// Factor on the layer's friction.
     pub gain: f32,
@@ -48,7 +48,7 @@ impl Record {
         }
     }
 
-    /// [`Record::parse`] of bytes that were parsed before: it does not check the encoding.
+    /// [`Record::parse`] for bytes that were parsed before; does not check the encoding.
     pub(crate) fn read(bytes: &[u8; RECORD_LEN], number: u8) -> Result<Self, SceneError> {
         let [kind] = get_at(bytes, KIND_AT);
         let [blend] = get_at(bytes, BLEND_AT);

@@ -1,4 +1,4 @@
-//! Where a layer acts.
+//! The part of the screen where a layer acts.
 
 #[cfg(feature = "polygon")]
 mod polygon;
@@ -23,12 +23,12 @@ pub(crate) const POLYGON: u8 = 3;
 const POLYGON_FIRST_AT: usize = REGION_NUMBERS_AT;
 const POLYGON_COUNT_AT: usize = REGION_NUMBERS_AT + 1;
 
-/// Where a layer acts.
+/// The part of the screen where a layer acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Region {
     /// Everywhere.
     Screen,
-    /// A rectangle with sides along the screen's; left and top edge belong to it, right and bottom do not.
+    /// A rectangle parallel to the screen, including its left and top edges, excluding right and bottom ones.
     Rectangle {
         /// Left edge, m.
         x_m: f32,
@@ -39,7 +39,7 @@ pub enum Region {
         /// Height, m.
         height_m: f32,
     },
-    /// The ellipse that touches the sides of a rectangle; its border belongs to it.
+    /// The ellipse inscribed in a rectangle, including its border.
     Ellipse {
         /// Left end, m.
         x_m: f32,
@@ -50,8 +50,8 @@ pub enum Region {
         /// Height, m.
         height_m: f32,
     },
-    /// A polygon, by the even-odd rule. Left and top edges belong to it, right and bottom ones do not, so that a
-    /// place on the common edge of two polygons is in exactly one of them.
+    /// A polygon, by the even-odd rule, including left and top edges, excluding right and bottom ones. A place on an
+    /// edge shared by two polygons is in exactly one of them.
     Polygon {
         /// Index of its first vertex among the scene's points, which are in m.
         first: u8,
@@ -98,7 +98,7 @@ impl Region {
         }
     }
 
-    /// The bit of [`feature`] that a board needs for the region, or 0.
+    /// The bit of [`feature`] needed for the region, or 0.
     pub(crate) fn feature(&self) -> u32 {
         if matches!(self, Self::Polygon { .. }) { feature::POLYGON } else { 0 }
     }
@@ -128,8 +128,8 @@ impl Region {
         }
     }
 
-    /// Most core cycles that the test for the region takes in addition to the test for a rectangle; `points` are the
-    /// scene's.
+    /// Largest number of core cycles of the test for the region, in addition to the test for a rectangle; `points` are
+    /// the scene's.
     pub(crate) fn cost(&self, points: &[Point]) -> Cost {
         match *self {
             Self::Screen | Self::Rectangle { .. } => Cost::ZERO,
@@ -150,12 +150,13 @@ fn put_numbers(record: &mut RecordBytes, numbers: [f32; 4]) {
     }
 }
 
-/// Most edges of a polygon that are level with one place: between two vertices, as many as at the upper of the two.
+/// Largest number of a polygon's edges at the height of one place. Between two vertices, it is the number at the upper
+/// one.
 fn edges_level_max(vertices: &[Point]) -> u32 {
     vertices.iter().map(|vertex| edges_level(vertices, vertex.y)).max().unwrap_or(0)
 }
 
-/// Edges of a polygon that are level with a place: those with one end below it and one not.
+/// Number of a polygon's edges at the height of a place: with exactly one end below it.
 fn edges_level(vertices: &[Point], y_m: f32) -> u32 {
     let mut was_below = vertices.last().is_some_and(|vertex| vertex.y > y_m);
     let mut count = 0;
@@ -167,7 +168,7 @@ fn edges_level(vertices: &[Point], y_m: f32) -> u32 {
     count
 }
 
-/// A region, ready to be tested.
+/// A region, prepared for testing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(u8)]
 pub(crate) enum ActiveRegion {
@@ -283,7 +284,7 @@ impl ActiveRegion {
             Self::Polygon { .. } => 0.0,
             Self::Screen => 0.0,
         };
-        // On the border, rounding may make the depth negative.
+        // At the border, rounding may make the depth negative.
         if depth_m > 0.0 { depth_m } else { 0.0 }
     }
 }

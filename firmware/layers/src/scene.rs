@@ -15,15 +15,14 @@ use frixel_model::Waveform;
 /// Bytes of the largest scene.
 pub const SCENE_MAX_LEN: usize = HEADER_LEN + RECORDS_MAX * RECORD_LEN + (POINTS_MAX + LAW_POINTS_MAX) * POINT_LEN;
 
-/// Bits of [`feature`] that a board needs to play a scene.
+/// Bits of [`feature`] needed to play a scene.
 pub fn features_of(header: &Header, records: impl Iterator<Item = Record>) -> u32 {
     let carrier = if header.waveform == Waveform::Sine { feature::SINE_CARRIER } else { 0 };
     let law = if header.law.is_some() { feature::EMPIRICAL } else { 0 };
     records.fold(carrier | law, |features, record| features | record.layer.feature() | record.region.feature())
 }
 
-/// A complete scene whose structure has been checked. The ranges of its numbers have not: a board checks them at the
-/// commit.
+/// A complete scene with a checked structure. A board checks the ranges of its numbers at the commit.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     header: Header,
@@ -40,11 +39,11 @@ impl<'a> Scene<'a> {
         Ok(scene)
     }
 
-    /// Checks version, length and header. The records must also be checked, with [`Scene::check_records`], before the
-    /// scene is used: this takes much less time than [`Scene::parse`].
+    /// Checks version, length and header, in much less time than [`Scene::parse`]. Check the records with
+    /// [`Scene::check_records`] before using the scene.
     #[inline(never)]
     pub fn open(bytes: &'a [u8]) -> Result<Self, SceneError> {
-        // The version comes first: a scene of another version may be of any length.
+        // The version comes first, since a scene of another version may have any length.
         if let Some(version) = bytes.first_chunk::<2>() {
             let found = u16::from_le_bytes(*version);
             if found != SCENE_VERSION {
@@ -91,7 +90,7 @@ impl<'a> Scene<'a> {
         &self.header
     }
 
-    /// The layers, the first one at the bottom.
+    /// The layers, from bottom to top.
     pub fn records(&self) -> impl Iterator<Item = Record> + use<'a> {
         (0..).zip(self.records).filter_map(|(number, record)| Record::read(record, number).ok())
     }

@@ -1,12 +1,12 @@
-//! A fast square root: `libm::sqrtf` takes 150 instructions or so on a Cortex-M4F, this takes 20.
+//! A fast square root in 20 instructions on a Cortex-M4F; `libm::sqrtf` takes about 150.
 
 /// Half of the exponent and a first guess at the rest of `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square
 /// root", Purdue University, 2003).
 const GUESS: u32 = 0x5f37_59df;
-/// Smaller numbers have the root 0: (1e-15)^2.
+/// Numbers below this have the root 0: (1e-15)^2.
 const LEAST: f32 = 1e-30;
 
-/// Square root, with a relative error within 3e-7 from 1e-30 to 1e30; 0 for smaller numbers and for not-a-number.
+/// Square root, with a relative error within 3e-7 from 1e-30 to 1e30; 0 for smaller numbers and for NaN.
 #[inline]
 pub fn square_root(x: f32) -> f32 {
     if !(x > LEAST) {

@@ -1,5 +1,5 @@
-//! Coefficients that do not fit into a layer, or that layers share. They belong to a scene and do not change while it
-//! plays.
+//! Coefficients that do not fit into a layer, or are shared by layers. They belong to a scene and are constant during a
+//! play.
 
 use frixel_wire::scene::POINTS_MAX;
 use heapless::Vec;
@@ -9,7 +9,7 @@ use crate::clicks::{CLICKS_MAX, ClickCoefficients, ClickNumber};
 use crate::noise_waves::Waves;
 use crate::point::Point;
 
-/// Most layers of noise in a scene.
+/// Largest number of noise layers in a scene.
 pub const NOISES_MAX: usize = if cfg!(feature = "noise") { 8 } else { 0 };
 /// Capacity for points; 0 if no enabled feature uses them.
 const POINTS_LEN: usize = if cfg!(any(feature = "polygon", feature = "speed")) { POINTS_MAX } else { 0 };

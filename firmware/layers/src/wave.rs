@@ -10,7 +10,7 @@ use crate::layout::RecordBytes;
 use crate::parameters::{Parameter, UnknownForm, form, put_form, range};
 use crate::prepare::steps_per_tick;
 
-/// 2^-32: converts a phase in integer steps to turns.
+/// Converts a phase in integer steps of 2^-32 turns to turns.
 pub(crate) const TURNS_PER_STEP: f32 = 1.0 / (1u64 << 32) as f32;
 
 const SINE: u8 = 0;
@@ -20,7 +20,7 @@ const SAW: u8 = 3;
 
 /// Shape of stripes over a turn, from 0 to 1.
 ///
-/// In a record it is the form byte, and the duty at the parameter's offset, which is zero for other shapes.
+/// A record stores it as the form byte, with the duty at the parameter's offset, which is zero for other shapes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Wave {
     /// `(1 + sin(2 pi turns)) / 2`.
@@ -28,7 +28,7 @@ pub enum Wave {
     Sine,
     /// 1 in the first part of each turn, 0 in the rest.
     Square {
-        /// Fraction of a turn that the first part takes, from 0.01 to 0.99.
+        /// Duration of the first part as a fraction of a turn, from 0.01 to 0.99.
         duty: f32,
     },
     /// Rises from 0 to 1 in the first half of each turn, and falls in the second.
@@ -38,7 +38,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// Most core cycles of a grating of this shape.
+    /// Largest number of core cycles of a grating of this shape.
     pub(crate) fn cost(&self) -> Cost {
         match self {
             Self::Sine => const { measured_cost("sine") },
@@ -82,19 +82,19 @@ impl Parameter for Wave {
     }
 }
 
-/// Phase of a wave that moves: as exact after 2^32 ticks as after one.
+/// Phase of a moving wave: as exact after 2^32 ticks as after one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Phase {
     /// Phase at tick 0, in turns.
     turns: f32,
-    /// Steps of 2^-32 turns by which the phase falls, modulo a turn; 0 at rest.
+    /// Decrement of the phase per tick, in steps of 2^-32 turns, modulo a turn; 0 at rest.
     steps_per_tick: u32,
 }
 
 impl Phase {
-    /// The phase of a wave that passes a place `drift_hz` times a second.
+    /// Phase of a wave that passes a place `drift_hz` times a second.
     pub(crate) fn new(turns: f32, drift_hz: f32, tick_hz: u32) -> Self {
-        // Waves at rest take no division.
+        // Waves at rest need no division.
         let steps_per_tick = if drift_hz == 0.0 { 0 } else { steps_per_tick(drift_hz, tick_hz) };
         Self { turns, steps_per_tick }
     }
@@ -104,7 +104,7 @@ impl Phase {
         if self.steps_per_tick == 0 { self.turns } else { self.moved(tick) }
     }
 
-    /// The phase of a wave that moves. A function of its own, since a wave at rest would take its instructions, too.
+    /// Phase of a moving wave. A separate function, since a wave at rest would otherwise execute its instructions too.
     #[cold]
     #[inline(never)]
     fn moved(&self, tick: u32) -> f32 {
@@ -114,7 +114,7 @@ impl Phase {
     }
 }
 
-/// A wave from -1 to 1 whose middle, of its high part or of its rise, lies at phase 0.
+/// A wave from -1 to 1, with the middle of its high part or of its rise at phase 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CentredWave {
     Cosine,
@@ -137,7 +137,7 @@ impl CentredWave {
         }
     }
 
-    /// The wave at a phase, from -1 to 1, but for a millionth.
+    /// The wave at a phase, from -1 to 1, within a millionth.
     #[inline]
     pub(crate) fn at(&self, turns: f32) -> f32 {
         match *self {

@@ -1,4 +1,4 @@
-//! A picture of samples at a pitch, bilinear between their centres, turned about its corner, held at its border or
+//! A picture of samples at a pitch: bilinear between their centres, rotated about its corner, and held at its border or
 //! tiled.
 
 use frixel_wire::message::Refusal;
@@ -18,21 +18,21 @@ parameters! {
     pub struct Bitmap {
         /// CRC-32 of the samples: the bitmap's name in the pool.
         crc32: u32 = 52,
-        /// The corner that the first sample begins at, m.
+        /// The corner of the first sample, m.
         x_m: f32 = 24 in range::BITMAP_PLACE_M,
-        /// The corner that the first sample begins at, m.
+        /// The corner of the first sample, m.
         y_m: f32 = 28 in range::BITMAP_PLACE_M,
-        /// Distance of samples in a row, m.
+        /// Spacing of samples in a row, m.
         pitch_m: f32 = 32 in range::PITCH_M,
         /// Electric friction of sample 0, N.
         black_n: f32 = 36 in range::FRICTION_N,
         /// Electric friction of sample 255, N.
         white_n: f32 = 40 in range::FRICTION_N,
-        /// Distance of rows, m.
+        /// Spacing of rows, m.
         pitch_y_m: f32 = 44 in range::PITCH_M,
-        /// How far the rows are turned about that corner, from x towards y, in turns.
+        /// Rotation of the rows about that corner, from x towards y, in turns.
         angle_turns: f32 = 48 in range::ANGLE_TURNS,
-        /// The picture is repeated in both directions. Otherwise the samples at its border extend outwards without end.
+        /// Whether the picture is repeated in both directions. Otherwise the samples at its border extend outwards.
         tiled: bool = 3,
     }
 }
@@ -83,7 +83,7 @@ pub(crate) struct BitmapCoefficients {
     /// Position of the first sample's centre, in m.
     x_m: f32,
     y_m: f32,
-    /// Samples along a row, and rows, for each metre along x and y.
+    /// Samples along a row, and rows, per metre along x and y.
     columns_per_m: [f32; 2],
     rows_per_m: [f32; 2],
     black_n: f32,
@@ -110,7 +110,7 @@ impl Evaluate for BitmapCoefficients {
     }
 }
 
-/// The samples before and after a position, and the fraction of the way between them. Positions are clamped to the
+/// The samples before and after a position, and the fraction of the interval between them. Positions are clamped to the
 /// border.
 #[inline]
 fn neighbours_held(position: f32, count: u16) -> (usize, usize, f32) {

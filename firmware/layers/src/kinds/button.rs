@@ -1,4 +1,4 @@
-//! A button: a face with a rim around it, which fills its region, and a click when the finger slides in.
+//! A button: a face with a rim around it that fills its region, and a click when the finger slides in.
 
 use frixel_wire::message::Refusal;
 use frixel_wire::scene::SceneError;
@@ -25,7 +25,7 @@ parameters! {
         rim_n: f32 = 28 in range::FRICTION_N,
         /// Electric friction on the face, N.
         face_n: f32 = 32 in range::FRICTION_N,
-        /// Felt when the finger slides in.
+        /// Pulse when the finger slides in.
         click: Click = 36,
     }
 }

@@ -13,8 +13,8 @@ use crate::prepare::Preparation;
 use crate::region::ActiveRegion;
 use crate::square_root::square_root;
 
-/// Below this speed, m/s, the friction fades to the mean of both: the estimated velocity of a finger that hardly moves
-/// has any direction. Fingers that explore slowly slide this fast.
+/// Speed below which the friction fades to the mean of both directions, m/s, since the estimated velocity of a nearly
+/// resting finger has a random direction. Fingers that explore slowly move at about this speed.
 const FADE_M_PER_S: f32 = 0.02;
 
 parameters! {
@@ -52,7 +52,7 @@ impl Kind for Direction {
     }
 }
 
-/// `middle + swing p`, with the part `p` from -1 to 1 of the velocity that lies along the axis.
+/// `middle + swing p`, with the component `p` from -1 to 1 of the velocity along the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DirectionCoefficients {
     axis_x: f32,
@@ -68,7 +68,7 @@ impl Evaluate for DirectionCoefficients {
         let speed_m_per_s = square_root(x * x + y * y);
         let along_m_per_s = self.axis_x * x + self.axis_y * y;
         let part = along_m_per_s / if speed_m_per_s > FADE_M_PER_S { speed_m_per_s } else { FADE_M_PER_S };
-        // Between both frictions also where the squares overflow, and where the velocity is not-a-number.
+        // Between both frictions even if the squares overflow, or the velocity is NaN.
         let part = if part > -1.0 { if part < 1.0 { part } else { 1.0 } } else { -1.0 };
         self.middle_n + self.swing_n * part
     }

@@ -29,7 +29,7 @@ parameters! {
         level_n: f32 = 40 in range::FRICTION_N,
         /// Electric friction on the line, N.
         ridge_n: f32 = 44 in range::FRICTION_N,
-        /// Felt when the line is crossed.
+        /// Pulse when the line is crossed.
         click: Click = 48,
     }
 }

@@ -14,7 +14,7 @@ use crate::wave::{CentredWave, Phase, Wave};
 
 parameters! {
     /// Stripes: `trough + (crest - trough) w(kx x + ky y + phase - drift t)` at the time `t` since power-on, with `w`
-    /// between 0 and 1 and one period a turn.
+    /// between 0 and 1 and a period of one turn.
     pub struct Grating {
         /// Shape of the stripes.
         wave: Wave = 44,
@@ -28,7 +28,7 @@ parameters! {
         trough_n: f32 = 36 in range::FRICTION_N,
         /// Electric friction where the wave is 1, N.
         crest_n: f32 = 40 in range::FRICTION_N,
-        /// Waves that pass a place in a second, in the direction in which the phase grows; negative against it.
+        /// Waves per second that pass a place, in the direction in which the phase grows; negative against it.
         drift_hz: f32 = 48 in range::DRIFT_HZ,
     }
 }

@@ -1,4 +1,4 @@
-//! Band-limited noise: the mean of eight cosine waves over the screen, which a seed chooses.
+//! Band-limited noise: the mean of eight cosine waves over the screen, drawn from a seed.
 
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
@@ -14,7 +14,7 @@ use crate::prepare::{Preparation, no_room};
 use crate::region::ActiveRegion;
 use crate::tables::NOISES_MAX;
 
-/// Keeps the sum within its range although a cosine may be a millionth larger than 1.
+/// Keeps the sum within its range, although a cosine may exceed 1 by a millionth.
 const WITHIN: f32 = 1.0 - 1e-6;
 
 parameters! {

@@ -1,4 +1,4 @@
-//! Rings around a middle: `trough + (crest - trough) w(k d - drift t)` at the distance `d`, with the wave `w` from 0 to
+//! Rings around a centre: `trough + (crest - trough) w(k d - drift t)` at the distance `d`, with the wave `w` from 0 to
 //! 1.
 
 use frixel_wire::message::Refusal;
@@ -15,8 +15,8 @@ use crate::square_root::square_root;
 use crate::wave::{CentredWave, Phase, Wave};
 
 parameters! {
-    /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the middle and the time `t` since
-    /// power-on, with `w` between 0 and 1 and one period a turn.
+    /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the centre and the time `t` since
+    /// power-on, with `w` between 0 and 1 and a period of one turn.
     pub struct Rings {
         /// Shape of the rings, from the middle outwards.
         wave: Wave = 44,
@@ -30,7 +30,7 @@ parameters! {
         trough_n: f32 = 36 in range::FRICTION_N,
         /// Electric friction where the wave is 1, N.
         crest_n: f32 = 40 in range::FRICTION_N,
-        /// Waves that pass a place in a second, outwards; negative inwards.
+        /// Waves per second that pass a place, outwards; negative inwards.
         drift_hz: f32 = 48 in range::DRIFT_HZ,
     }
 }

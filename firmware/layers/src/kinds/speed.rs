@@ -1,4 +1,4 @@
-//! A curve over sliding speed, straight between its points and held outside of them.
+//! A curve over sliding speed: linear between its points, and constant outside.
 
 use frixel_wire::message::{ConfigRefusal, Refusal};
 use frixel_wire::scene::{CURVE_POINTS_MAX, SceneError};
@@ -15,11 +15,11 @@ use crate::region::{ActiveRegion, Region};
 use crate::square_root::square_root;
 
 parameters! {
-    /// A curve over sliding speed, straight between its points and held outside of them.
+    /// A curve over sliding speed: linear between its points, and constant outside.
     pub struct Speed {
-        /// Its first point among the scene's: speed in m/s, and friction in N or a factor. Speeds rise.
+        /// Its first point among the scene's: speed in m/s, and friction in N or a factor. Speeds ascend.
         first: u8 = 52,
-        /// How many points it has, 2 to [`CURVE_POINTS_MAX`](frixel_wire::scene::CURVE_POINTS_MAX).
+        /// Number of its points, 2 to [`CURVE_POINTS_MAX`](frixel_wire::scene::CURVE_POINTS_MAX).
         count: u8 = 53,
     }
 }
@@ -31,7 +31,7 @@ impl Kind for Speed {
         check_count(self.first, self.count, 2..=CURVE_POINTS_MAX, point_count, record)
     }
 
-    /// Speeds rise from point to point.
+    /// Speeds must ascend.
     fn check_relations(&self, points: &[Point], layer: u8) -> Result<(), ConfigRefusal> {
         let mut min_m_per_s = range::SPEED_M_PER_S.min as f32;
         let max_m_per_s = range::SPEED_M_PER_S.max as f32;

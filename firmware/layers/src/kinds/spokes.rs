@@ -1,4 +1,4 @@
-//! Spokes around a middle: a wave of the angle `a`, which fades towards the middle.
+//! Spokes around a centre: a wave over the angle `a`, which fades towards the centre.
 
 use frixel_wire::message::Refusal;
 
@@ -13,13 +13,13 @@ use crate::prepare::Preparation;
 use crate::region::ActiveRegion;
 use crate::wave::{CentredWave, Wave};
 
-/// Spokes that are narrower, m, fade: no finger tells them apart, and in the middle there is no angle.
+/// Width in m below which spokes fade: fingers cannot resolve them, and the angle is undefined in the centre.
 const NARROW_M: f32 = 1e-3;
 
 parameters! {
-    /// Spokes: `mean + f (trough + (crest - trough) w(n a + phase) - mean)` at the angle `a` around the middle, in
-    /// turns, with `w` between 0 and 1, one period a turn, and `mean` halfway between trough and crest. `f` is 1 where
-    /// a spoke is at least 1 mm wide, and nearer to the middle the square of its width in mm.
+    /// Spokes: `mean + f (trough + (crest - trough) w(n a + phase) - mean)` at the angle `a` around the centre, in
+    /// turns, with `w` between 0 and 1, a period of one turn, and `mean` halfway between trough and crest. `f` is 1
+    /// where a spoke is at least 1 mm wide; closer to the centre, it is the square of the width in mm.
     pub struct Spokes {
         /// Shape of the spokes, from x towards y.
         wave: Wave = 44,
@@ -33,7 +33,7 @@ parameters! {
         trough_n: f32 = 36 in range::FRICTION_N,
         /// Electric friction where the wave is 1, N.
         crest_n: f32 = 40 in range::FRICTION_N,
-        /// Number of spokes in a turn: a whole number, so that the last one is followed by the first.
+        /// Number of spokes per turn: a whole number, so that the last one is followed by the first.
         number: u8 = 52,
     }
 }
@@ -86,7 +86,7 @@ impl Evaluate for SpokesCoefficients {
         let [x_m, y_m] = context.inputs.place_m;
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);
         let fade = (x_m * x_m + y_m * y_m) * self.per_square_m;
-        // Not a number, and no fading, in the middle of no spokes.
+        // NaN, and thus no fading, in the centre without spokes.
         let swing_n = if fade < 1.0 { fade * self.swing_n } else { self.swing_n };
         self.middle_n + swing_n * self.wave.at(self.number * angle_turns(x_m, y_m) + self.phase_turns)
     }

@@ -1,4 +1,4 @@
-//! Friction that the host streams while the scene plays: `low + (high - low) s`, with the sample `s` from 0 to 1.
+//! Friction streamed by the host during the play: `low + (high - low) s`, with the sample `s` from 0 to 1.
 
 use frixel_wire::message::Refusal;
 
@@ -13,7 +13,7 @@ use crate::prepare::Preparation;
 use crate::region::ActiveRegion;
 
 parameters! {
-    /// Friction that the host streams while the scene plays: `low + (high - low) s`, with the sample `s` from 0 to 1.
+    /// Friction streamed by the host during the play: `low + (high - low) s`, with the sample `s` from 0 to 1.
     pub struct Stream {
         /// Electric friction of sample 0, N.
         low_n: f32 = 24 in range::FRICTION_N,

@@ -23,7 +23,7 @@ parameters! {
         beat: Beat = 3,
         /// Frequency, Hz.
         frequency_hz: f32 = 24 in range::FREQUENCY_HZ,
-        /// Electric friction between bursts, and the least within, N.
+        /// Electric friction between bursts, and the smallest within, N.
         low_n: f32 = 28 in range::FRICTION_N,
         /// Largest electric friction, N.
         high_n: f32 = 32 in range::FRICTION_N,
@@ -116,7 +116,7 @@ impl Kind for Vibration {
     }
 }
 
-/// `low + half_span e (1 + w)`. The phase is a tick number times a step, modulo a turn, so the phase does not drift.
+/// `low + half_span e (1 + w)`. The phase is a tick number times a step, modulo a turn, so it does not drift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VibrationCoefficients {
     beat: Beat,

@@ -1,13 +1,13 @@
-//! Whether a place is inside a polygon.
+//! Tests whether a place is inside a polygon.
 
 use crate::context::Context;
 use crate::point::points_of;
 
 /// The even-odd rule: whether a line towards larger x crosses the edges an odd number of times.
 ///
-/// Where an edge lies is computed from its upper end to its lower end, whichever is the first, so that two polygons
+/// The position of an edge is computed from its upper to its lower end, regardless of their order, so that two polygons
 /// with a common edge agree on it to the bit.
-// Code of its own, as the evaluation of a kind is.
+// Separate code, like the evaluation of a kind.
 #[inline]
 pub(super) fn contains(first: u8, count: u8, context: &Context) -> bool {
     let vertices = points_of(context.tables.points(), first, count);
