@@ -20,16 +20,16 @@ pub struct Active {
     pub voltage_max_v_rms: f32,
     /// Ticks without a frame from the host after which the board disarms.
     pub host_timeout_ticks: u32,
-    /// Extrapolate the finger's position along its track. Otherwise the last measured position is used.
+    /// Whether to extrapolate the finger's position along its track. Otherwise the last measured position is used.
     pub prediction: bool,
-    /// From electric friction to voltage; `None` without a scene.
+    /// Table from electric friction to voltage; `None` without a scene.
     pub table: Option<InverseTable>,
     /// The layers.
     pub layers: ActiveLayers,
 }
 
 impl Active {
-    /// Coefficients of no scene.
+    /// Coefficients without a scene.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Active {
         }
     }
 
-    /// Forgets the scene.
+    /// Removes the scene.
     pub fn unload(&mut self) {
         self.layers.clear();
         self.table = None;
@@ -54,8 +54,8 @@ impl Active {
         self.prediction = true;
     }
 
-    /// Lowers whatever is above a board's ceilings to them, and returns whether anything was. Then no tick has to look
-    /// at the ceilings: its code is at most the carrier's.
+    /// Lowers coefficients to a board's ceilings, and returns whether any was above. No tick has to check the ceilings
+    /// then, since its code is at most the carrier's.
     pub(crate) fn limit_to(&mut self, ceilings: &Ceilings) -> bool {
         let carrier = self.carrier.within(ceilings);
         let voltage_max_v_rms =
@@ -99,7 +99,7 @@ impl Active {
     }
 }
 
-/// The nearest number from zero to a maximum; zero for not-a-number.
+/// The nearest number from zero to a maximum; zero for NaN.
 fn from_zero_to(max: f32, number: f32) -> f32 {
     if number > max {
         max

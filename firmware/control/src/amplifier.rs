@@ -1,16 +1,16 @@
-//! What a board's amplifier is specified to do.
+//! Specification of a board's amplifier.
 
-/// The high-voltage amplifier of a board: how fast it follows and switches, and what its ready line means.
+/// The high-voltage amplifier of a board: its bandwidth, its switching times, and the meaning of its ready line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmplifierSpec {
-    /// Time constant with which the amplifier's output, before the series resistor, follows the DAC, in s. 0 for an
-    /// amplifier that is much faster than a tick.
+    /// Time constant of the amplifier's output, before the series resistor, in s. 0 for an amplifier that is much
+    /// faster than a tick.
     pub time_constant_s: f32,
     /// Longest time from the rise of the enable until the output follows the DAC.
     pub turn_on: SwitchingTime,
     /// Longest time from the fall of the enable until the output is at 0 V.
     pub turn_off: SwitchingTime,
-    /// What the ready line says while the amplifier is disabled.
+    /// Level of the ready line while the amplifier is disabled.
     pub ready_while_disabled: ReadyWhileDisabled,
 }
 
@@ -21,18 +21,18 @@ pub enum ReadyWhileDisabled {
     High,
     /// Low: a low line is a fault only while the amplifier is enabled, and a high line is a fault once it is off.
     Low,
-    /// Either: a low line is a fault only while the amplifier is enabled.
+    /// Any level: a low line is a fault only while the amplifier is enabled.
     DontCare,
 }
 
-/// A time that an amplifier takes to switch on or off, of at most [`SwitchingTime::MAX_S`].
+/// Switching time of an amplifier, at most [`SwitchingTime::MAX_S`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchingTime(f32);
 
 impl SwitchingTime {
-    /// Longest time that a board may state, in s. While an amplifier switches, the supervisor compares its output with
-    /// a ceiling only. A hand that is startled takes 100 ms to let go, so that 2 ms add little to a shock; amplifiers
-    /// with an enable input take from 10 us to 1 ms (assumed, from the parts that `docs/hardware.md` asks for).
+    /// Longest time that a board may state, in s. While an amplifier switches, the supervisor only compares its output
+    /// with a ceiling. A startled hand takes 100 ms to let go, so 2 ms add little to a shock. Amplifiers with an enable
+    /// input take from 10 us to 1 ms (assumed, from the parts required by `docs/hardware.md`).
     pub const MAX_S: f32 = 2e-3;
 
     /// A time in s.
@@ -61,7 +61,7 @@ impl SwitchingTime {
     pub(crate) fn ticks(self, tick_hz: u32) -> u32 {
         let ticks = self.0 * tick_hz as f32;
         let whole = ticks as u32;
-        // A product that is above a whole number by rounding alone is that number.
+        // Avoid rounding up a product that exceeds a whole number only by rounding.
         whole + u32::from(ticks - whole as f32 > 1e-3)
     }
 }

@@ -19,9 +19,9 @@ pub struct Board {
     pub tick_hz: u32,
     /// Limits that every scene must respect.
     pub limits: BoardLimits,
-    /// What the amplifier is specified to do.
+    /// Specification of the amplifier.
     pub amplifier: AmplifierSpec,
-    /// Why the processor started.
+    /// Reset cause of the processor.
     pub reset_cause: ResetCause,
     /// The fault that caused the reset, and its detail number.
     pub reset_fault: Option<(Fault, u32)>,
@@ -29,16 +29,15 @@ pub struct Board {
     pub reset_text: &'static [u8],
     /// The host reports the finger's position. Otherwise the board has its own touch source.
     pub touch_from_host: bool,
-    /// Notices of the hello that hold from the start on ([`frixel_wire::hello::notice`]).
+    /// Notices of the hello that hold from the start ([`frixel_wire::hello::notice`]).
     pub notices: u8,
 }
 
 impl Board {
     /// The simulated board: the limits of the smallest real board, with an electrode that is not touched.
     ///
-    /// The electrode is 2 cm^2 of bare 10 um polymer (relative permittivity 3), 0.53 nF, behind edges of 20 us. The
-    /// current limits are what a 150 V rms square carrier needs there, with a margin; they are not a statement about
-    /// what is safe for a person.
+    /// The electrode is 2 cm^2 of bare 10 um polymer (relative permittivity 3), 0.53 nF, with edges of 20 us. The
+    /// current limits suffice for a 150 V rms square carrier, with a margin; they do not imply safety for a person.
     pub const SIMULATOR: Self = Self {
         kind: BoardKind::Simulator,
         id: *b"frixel-sim\0\0",
@@ -55,11 +54,11 @@ impl Board {
             current_max_a_peak: 15e-3,
             touch_report_period_s: 10e-3,
             tick_cycles_max: BoardLimits::SMALLEST_TICK_CYCLES_MAX,
-            // Nobody touches it.
+            // It cannot be touched.
             series_resistance_ohm: f32::INFINITY,
             core: Core::CortexM4f,
         },
-        // The edges' 20 us contain the amplifier's own time constant. It switches at once.
+        // The edges' 20 us include the amplifier's own time constant. It switches at once.
         amplifier: AmplifierSpec {
             time_constant_s: 0.0,
             turn_on: SwitchingTime::from_s(0.0),
@@ -73,7 +72,7 @@ impl Board {
         notices: 0,
     };
 
-    /// The NUCLEO-G474RE with the parts that `docs/hardware.md` lists, until bring-up has stored other limits. Another
+    /// The NUCLEO-G474RE with the parts listed in `docs/hardware.md`, until bring-up has stored other limits. Another
     /// amplifier, series resistor or electrode needs other numbers.
     pub const NUCLEO_G474RE: Self = Self {
         kind: BoardKind::NucleoG474re,
@@ -83,21 +82,21 @@ impl Board {
             voltage_max_v_peak: 50.0,
             // 10 V of the DAC behind an amplifier of gain 20.
             full_scale_v_peak: 200.0,
-            // The one lag that takes as much of the mean square as 68 kOhm in series with the electrode below, 36 us,
+            // The single lag with the same loss of mean square as 68 kOhm in series with the electrode below, 36 us,
             // behind an amplifier of 20 kHz, 8 us.
             edge_time_constant_s: 37.5e-6,
             // 2 cm^2 of bare 10 um polymer, relative permittivity 3.
             electrode_capacitance_max_f: 0.53e-9,
-            // The limit for touch currents in normal use of IEC 61010-1, without its weighting by frequency.
+            // The limit for touch currents in normal use of IEC 61010-1, without frequency weighting.
             current_max_a_rms: 0.5e-3,
-            // The current through the series resistor when an edge goes from 50 V to -50 V, 1.47 mA, and a fifth more.
+            // The current through the series resistor for an edge from 50 V to -50 V, 1.47 mA, plus a fifth.
             current_max_a_peak: 1.8e-3,
-            // Two resistors of 34 kOhm, 1 %. They leave 28.7 V peak at a carrier of 125 Hz, 43.9 V at 1 kHz, and 50 V
+            // Two resistors of 34 kOhm, 1 %. They allow 28.7 V peak at a carrier of 125 Hz, 43.9 V at 1 kHz, and 50 V
             // from 2.2 kHz on (`frixel_model::TouchBound`).
             series_resistance_ohm: 68e3,
             ..Self::SIMULATOR.limits
         },
-        // As `docs/hardware.md` demands it.
+        // As required by `docs/hardware.md`.
         amplifier: AmplifierSpec {
             // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
             time_constant_s: 8e-6,
@@ -110,29 +109,28 @@ impl Board {
         ..Self::SIMULATOR
     };
 
-    /// The Raspberry Pi Pico 2 with the parts and the limits of the NUCLEO-G474RE. Until limits are stored, its image
-    /// allows [`Self::UNMEASURED_V_PEAK`].
+    /// The Raspberry Pi Pico 2 with the parts and the limits of the NUCLEO-G474RE. Its image allows
+    /// [`Self::UNMEASURED_V_PEAK`] until limits are stored.
     pub const PICO_2: Self = Self {
         kind: BoardKind::Pico2,
         limits: BoardLimits {
-            // 60 % of the 3,750 cycles that the RP2350 at 150 MHz has between two ticks. They are estimated as those of
-            // a Cortex-M4F with flash wait states; its Cortex-M33 runs the tick from RAM, without them.
+            // 60 % of the 3,750 cycles between two ticks of the RP2350 at 150 MHz, estimated like a Cortex-M4F with
+            // flash wait states; its Cortex-M33 runs the tick from RAM, without them.
             tick_cycles_max: 2_250,
             ..Self::NUCLEO_G474RE.limits
         },
         ..Self::NUCLEO_G474RE
     };
 
-    /// The Raspberry Pi Pico with the same parts. It computes in software what the others' floating-point unit does, so
-    /// it has a fifth of their ticks, and takes little more than one layer.
+    /// The Raspberry Pi Pico with the same parts. It emulates floating-point arithmetic in software, so its tick rate
+    /// is a fifth of the others', and it plays little more than one layer.
     pub const PICO: Self = Self {
         kind: BoardKind::Pico,
         tick_hz: 8_000,
         limits: BoardLimits {
-            // Of the 25,000 cycles that the RP2040 at 200 MHz has between two ticks. What is outside of the estimate
-            // takes up to 7,750 more (its emulator: an order, the ready line, monitor and switch, the status for the
-            // main loop), so that a seventh of the tick is left. A grating, estimated at some 13,410, is what this board
-            // is to take.
+            // Of the 25,000 cycles between two ticks of the RP2040 at 200 MHz. Work outside of the estimate takes up to
+            // 7,750 more (on its emulator: an order, the ready line, monitor and switch, the status for the main loop),
+            // so a seventh of the tick remains. The board must support a grating, estimated at about 13,410.
             tick_cycles_max: 13_450,
             core: Core::CortexM0Plus,
             ..Self::NUCLEO_G474RE.limits
@@ -140,13 +138,13 @@ impl Board {
         ..Self::NUCLEO_G474RE
     };
 
-    /// Largest voltage until limits are stored, V peak: of a Pico and a Pico 2, and of a NUCLEO-G474RE that is built
-    /// for another series resistance. No bring-up has measured DAC, amplifier, monitor, one-shot and resistance
-    /// before a first play, so it is one that does no harm if gain or reference is twice as large as it should be, or
-    /// the resistance half.
+    /// Largest voltage until limits are stored, V peak, for a Pico, a Pico 2, and a NUCLEO-G474RE built for another
+    /// series resistance. DAC, amplifier, monitor, one-shot and resistance are not measured by a bring-up before a
+    /// first play. This voltage is therefore harmless even if gain or reference is twice the nominal value, or the
+    /// resistance half of it.
     pub const UNMEASURED_V_PEAK: f32 = 10.0;
 
-    /// The largest voltage that its image allows, V peak, if nothing stores limits on it: there is no bring-up for a
+    /// The largest voltage that its image allows, V peak, if limits are never stored on it: there is no bring-up for a
     /// Pico or a Pico 2 yet.
     pub const fn never_measured_v_peak(&self) -> Option<f32> {
         match self.kind {
@@ -166,22 +164,22 @@ impl Board {
     }
 
     /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
-    /// largest voltage: what is left are the edges that the resistance makes, and the bound that it gives.
+    /// the largest voltage. What remains are the edges of the resistance, and its bound.
     #[must_use]
     pub const fn behind(self, series_resistance_ohm: f32) -> Self {
         let electrode_s = series_resistance_ohm * self.limits.electrode_capacitance_max_f;
         let amplifier_s = self.amplifier.time_constant_s;
-        // Two lags in a row as one (`frixel_model::Carrier`).
+        // Two successive lags as one (`frixel_model::Carrier`).
         let edge_time_constant_s = electrode_s + amplifier_s - electrode_s * amplifier_s / (electrode_s + amplifier_s);
         let voltage_max_v_peak = self.limits.full_scale_v_peak;
         let limits = BoardLimits { voltage_max_v_peak, edge_time_constant_s, series_resistance_ohm, ..self.limits };
         Self { limits, ..self }
     }
 
-    /// The names that [`Self::named`] knows.
+    /// The names accepted by [`Self::named`].
     pub const NAMES: [&'static str; 3] = ["nucleo-g474re", "pico-2", "pico"];
 
-    /// What this board may put out.
+    /// The ceilings of this board's output.
     pub fn ceilings(&self) -> Ceilings {
         Ceilings::new(self)
     }

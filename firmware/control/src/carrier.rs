@@ -1,15 +1,15 @@
 //! The carrier: alternates the envelope's sign, so that no charge leaks through the skin and no direct current flows.
 //!
-//! The running integral of the DAC code, exact in fixed point, never leaves plus or minus one half period at full
-//! voltage, however the amplitude changes: before a code that would leave this range, the half period ends early.
+//! The running integral of the DAC code, exact in fixed point, stays within plus or minus one half period at full
+//! voltage for any change of amplitude: a half period ends early before a code that would leave this range.
 //!
-//! A whole half period begins at an early edge, so that an envelope has at most one while it is constant: the half
-//! period behind the edge takes back at most one half of the range, and the next one returns to where the edge was.
-//! From the second period after a change on, all half periods have their nominal length, and the codes of a period add
-//! up to zero. The mean of the integral stays where the changes have left it, which is no direct current. An integral
-//! beyond the smaller limit of a new scene falls first, with a sixteenth of the envelope: a coating that a slower
-//! carrier has charged would add its voltage to the whole of it, and more than the touch current's limit would flow
-//! once (`frixel_model::TouchBound`).
+//! A whole half period follows an early edge, so a constant envelope has at most one early edge: the half period after
+//! the edge reverses at most half of the range, and the next one returns to the position of the edge. From the second
+//! period after a change on, all half periods have their nominal length, and the codes of a period add up to zero. The
+//! mean of the integral remains where the changes have left it, which is not a direct current. An integral beyond the
+//! smaller limit of a new scene first falls, with a sixteenth of the envelope. Otherwise a coating charged by a slower
+//! carrier would add its voltage to the full envelope, and the touch current would exceed its limit once
+//! (`frixel_model::TouchBound`).
 
 use fixed::types::{I1F15, I17F15};
 use frixel_layers::{Waveform, cosine};
@@ -17,8 +17,8 @@ use frixel_wire::dac_code::DacCode;
 
 use crate::Ceilings;
 
-/// An integral beyond its limit falls with the envelope divided by two to this power. Below sixteen codes, 0.1 V at 200
-/// V full scale, a positive one is nothing then, and the output waits for a larger envelope.
+/// An integral beyond its limit falls with the envelope divided by two to this power. A positive envelope below sixteen
+/// codes, 0.1 V at 200 V full scale, then becomes zero, and the output waits for a larger one.
 const FALL_SHIFT: u32 = 4;
 
 /// Parameters of a carrier; part of [`Active`](crate::Active).
@@ -51,7 +51,7 @@ impl CarrierTiming {
         Self { waveform, half_period_ticks, codes_per_v_rms, code_max, integral_max, turns_per_tick }
     }
 
-    /// This carrier, with what is above a board's ceilings lowered to them.
+    /// This carrier, lowered to a board's ceilings.
     pub(crate) fn within(&self, ceilings: &Ceilings) -> Self {
         let half_period_ticks = ceilings.half_period_ticks(self.half_period_ticks);
         let ceiling = ceilings.code(ceilings.voltage_max_v_peak(half_period_ticks));
@@ -131,9 +131,9 @@ impl Carrier {
         DacCode(I1F15::wrapping_from_num(code))
     }
 
-    /// Handles a code after which the integral would be beyond its limit: if it moves the integral away from zero, ends
-    /// the half period before this tick, and takes the first code of the next. An integral that is beyond its limit
-    /// already falls slowly.
+    /// Handles a code that would move the integral beyond its limit. If it moves the integral away from zero, ends the
+    /// half period before this tick, and takes the first code of the next. An integral already beyond its limit falls
+    /// slowly.
     #[cold]
     fn within_balance(&mut self, mut code: I17F15, timing: &CarrierTiming, tick: u32) -> I17F15 {
         if self.integral.is_negative() == self.sign.is_negative() {
@@ -167,8 +167,8 @@ impl Carrier {
             }
             Waveform::Sine => 0.0,
         };
-        // The last line: whatever envelope and coefficients are, the code is from zero to `code_max`. The conversion makes
-        // zero of a negative number and of not-a-number.
+        // The last line of defence: for any envelope and coefficients, the code is from zero to `code_max`. The
+        // conversion turns a negative number and NaN into zero.
         let code_max = i32::from(timing.code_max.bits()).cast_unsigned();
         I17F15::from_bits(((code + 0.5) as u32).min(code_max).cast_signed())
     }

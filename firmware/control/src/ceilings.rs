@@ -1,4 +1,4 @@
-//! What a board may put out, whatever coefficients it is given.
+//! Ceilings of a board's output for any coefficients.
 
 use frixel_layers::{CARRIER_MIN_HZ, HALF_PERIOD_MIN_TICKS, HOST_TIMEOUTS_S};
 use frixel_model::TouchBound;
@@ -7,7 +7,7 @@ use frixel_wire::dac_code::DacCode;
 use crate::Board;
 
 /// The ceilings of a board. The ticker lowers every coefficient to them when it takes a scene; the session refuses a
-/// scene that is above them.
+/// scene above them.
 #[derive(Clone, Copy, Debug)]
 pub struct Ceilings {
     voltage_max_v_peak: f32,
@@ -31,20 +31,20 @@ impl Ceilings {
         }
     }
 
-    /// The largest peak voltage on a carrier of so many ticks in a half period, in V: that of the board, or less where
+    /// The largest peak voltage on a carrier with half periods of `half_period_ticks`, in V: the board's, or less if
     /// the current through a person who touches the electrode is the limit.
     pub fn voltage_max_v_peak(&self, half_period_ticks: u32) -> f32 {
         let carrier_hz = 0.5 / (half_period_ticks as f32 * self.tick_period_s);
         self.voltage_max_v_peak.min(self.touch.voltage_max_v_peak(carrier_hz))
     }
 
-    /// The largest code that is no more than a peak voltage in V.
+    /// The largest code up to a peak voltage in V.
     pub fn code(&self, voltage_v_peak: f32) -> DacCode {
         let code = (voltage_v_peak * self.codes_per_v) as i32;
         DacCode::from_bits(code.clamp(0, i32::from(i16::MAX)) as i16)
     }
 
-    /// The nearest length of a half period that a carrier may have, in ticks.
+    /// The nearest allowed length of a half period, in ticks.
     #[allow(clippy::manual_clamp, reason = "`clamp` panics where its ends are the wrong way round")]
     pub(crate) fn half_period_ticks(&self, ticks: u32) -> u32 {
         ticks.min(self.half_period_max_ticks).max(HALF_PERIOD_MIN_TICKS)

@@ -6,11 +6,10 @@ use crate::tick_count::is_past;
 
 /// Touch data is stale after this many report periods without a report, and after [`STALE_MAX_S`].
 const STALE_AFTER_PERIODS: f32 = 4.0;
-/// No board drives a finger for longer without a report, in s, whatever report period it states: a finger that was
-/// lifted must not find a driven screen when it comes back, and nobody knows where a finger is that was not reported
-/// for so long.
+/// Longest time without a report for which a board drives a finger, in s, for any report period. A lifted finger must
+/// not meet a driven screen when it returns, and the position of the finger is unknown after this time.
 const STALE_MAX_S: f32 = 40e-3;
-/// The friction falls in the last of so many equal parts of that time: from the third report period on.
+/// Number of equal parts of that time, in the last of which the friction falls: from the third report period on.
 const FALL_PART: f32 = 4.0;
 
 /// Ticks without a report until touch data is stale.
@@ -18,7 +17,7 @@ pub fn stale_after_ticks(board: &Board) -> u32 {
     board.ticks((STALE_AFTER_PERIODS * board.limits.touch_report_period_s).min(STALE_MAX_S))
 }
 
-/// By how much the gain on the friction falls in a tick before touch data is stale after so many ticks.
+/// Fall of the friction's gain per tick before touch data is stale, given the ticks until it is stale.
 pub(crate) fn fall_per_tick(stale_after_ticks: u32) -> f32 {
     FALL_PART / stale_after_ticks.max(1) as f32
 }
@@ -28,14 +27,14 @@ pub(crate) fn fall_per_tick(stale_after_ticks: u32) -> f32 {
 pub(crate) enum Finger {
     /// The touch source has reported that no finger is on the screen.
     Up,
-    /// The touch source has reported nothing new for too long.
+    /// The touch source has not reported anything new for too long.
     Stale,
     /// The finger follows a track.
     Down(Track),
 }
 
 impl Finger {
-    /// The track that the finger follows, if there is a finger.
+    /// The track of the finger, if there is one.
     #[inline]
     pub(crate) fn track(&self) -> Option<&Track> {
         match self {
@@ -57,8 +56,8 @@ impl Finger {
         was_lifted
     }
 
-    /// Replaces a track that has ended by [`Self::Stale`]. If it were kept, it would become valid again once the tick
-    /// counter has wrapped. Called at every tick.
+    /// Replaces an ended track by [`Self::Stale`]. It would otherwise become valid again after the tick counter wraps.
+    /// Called in every tick.
     #[inline]
     pub(crate) fn expire(&mut self, now_tick: u32) {
         if self.track().is_some_and(|track| is_past(track.until_tick, now_tick)) {

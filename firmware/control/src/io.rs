@@ -5,14 +5,14 @@ use frixel_wire::dac_code::DacCode;
 /// The board's inputs at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sense {
-    /// The amplifier's ready line is low. What that means while the amplifier is disabled is a property of the board
+    /// Whether the amplifier's ready line is low. Its meaning while the amplifier is disabled depends on the board
     /// ([`ReadyWhileDisabled`](crate::ReadyWhileDisabled)).
     pub amplifier_fault: bool,
-    /// Voltage at the amplifier's output, before the series resistor, in V, as the amplifier's monitor shows it at the
-    /// beginning of the tick. A board latches the code of a tick at the end of the tick's period, so this is the output
-    /// after the code of the tick before the last one has been there for a whole tick.
+    /// Voltage at the amplifier's output, before the series resistor, in V, as shown by the amplifier's monitor at the
+    /// beginning of the tick. A board latches the code of a tick at the end of the tick's period. This is therefore the
+    /// output after the code of the tick before the last one was held for a whole tick.
     pub monitor_v: f32,
-    /// The arm switch is held.
+    /// Whether the arm switch is held.
     pub arm_switch: bool,
 }
 
@@ -21,6 +21,6 @@ pub struct Sense {
 pub struct Drive {
     /// Bipolar DAC code, a fraction of the board's full-scale voltage.
     pub dac_code: DacCode,
-    /// The amplifier may drive the electrode.
+    /// Whether the amplifier may drive the electrode.
     pub amplifier_enable: bool,
 }

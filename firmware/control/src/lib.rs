@@ -1,6 +1,6 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out, 40,000 times a second.
 //!
-//! [`Ticker::tick`] runs the same steps in the same order at every tick while the output is enabled. It reads the
+//! [`Ticker::tick`] runs the same steps in the same order in every tick while the output is enabled. It reads the
 //! coefficients of a scene from an [`Active`]. Before each tick, the ticker takes at most one [`Order`] from the
 //! session: a [`Track`] of the finger, a scene, a change of state. It reports a [`Status`]. It does not allocate, wait
 //! or panic, does no I/O, and reads no clock: it counts ticks.
@@ -19,8 +19,8 @@
 //!
 //! A board builds this crate for speed, and all others for size.
 //!
-//! The Cargo features `stream` and `sine-carrier` enable what a scene may use. The documentation of `frixel-session`
-//! lists all features.
+//! The Cargo features `stream` and `sine-carrier` enable parts of scenes. The documentation of `frixel-session` lists
+//! all features.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

@@ -1,53 +1,53 @@
-//! Compares the amplifier's monitor with what was driven.
+//! Compares the amplifier's monitor with the driven voltage.
 //!
 //! A board latches the code of a tick at the end of that tick's period, and reads the monitor at the beginning of a
-//! period. So the reading at a tick shows the codes up to the tick before the last one, each held for a whole tick.
+//! period. The reading in a tick thus shows the codes up to the tick before the last one, each held for a whole tick.
 //!
-//! | the amplifier is | right is |
+//! | state of the amplifier | correct reading |
 //! |---|---|
 //! | enabled | a voltage near the expected one |
-//! | enabled since less than its turn-on time | any up to the ceiling: the largest of what it had and what is driven |
-//! | disabled since less than its turn-off time | any up to the ceiling, and none above an earlier one |
+//! | enabled for less than its turn-on time | up to the ceiling: the larger of its initial and the driven voltage |
+//! | disabled for less than its turn-off time | up to the ceiling, and not above an earlier reading |
 //! | disabled | a voltage near zero |
 //!
-//! A wrong voltage after the enable has fallen is a fault at once, and so is one that is not near zero at the end of
-//! the turn-off time. Elsewhere wrong ticks are counted, so that a single disturbed reading does not stop the output.
+//! A wrong voltage after the enable has fallen is an immediate fault, and so is one that is not near zero at the end of
+//! the turn-off time. Otherwise, wrong ticks are counted, so that a single disturbed reading does not stop the output.
 //!
-//! The tolerance of a single tick has room for an offset, which hides any gain at a low voltage. [`Gain`] sums the right
-//! ticks over whole periods of the carrier, where the offset cancels.
+//! The tolerance of a single tick includes an offset, which hides any gain error at a low voltage. [`Gain`] sums
+//! correct ticks over whole periods of the carrier, where the offset cancels.
 
 mod gain;
 
 use crate::{Board, ReadyWhileDisabled};
 use gain::Gain;
 
-/// Tolerance of the monitor voltage, as a fraction of full scale; [`GAIN_TOLERANCE`] is added to it. For offsets of
-/// amplifier, level shifter and ADC (assumed; none has been measured).
+/// Tolerance of the monitor voltage, as a fraction of full scale, in addition to [`GAIN_TOLERANCE`]. It covers offsets
+/// of amplifier, level shifter and ADC (assumed, not measured).
 const FLOOR: f32 = 0.04;
-/// Tolerance as a fraction of a constant voltage: for the gain errors of the same parts (5 % are asked of the
-/// amplifier), for an amplifier that is faster or slower than its board says, and for the 2 us for which the newest
-/// code is out when the monitor is read.
+/// Tolerance as a fraction of a constant voltage. It covers gain errors of the same parts (the amplifier's is specified
+/// as 5 %), a deviation of the amplifier's speed from its specification, and the 2 us for which the newest code is out
+/// when the monitor is read.
 const GAIN_TOLERANCE: f32 = 0.25;
-/// The monitor faults once ticks with a wrong voltage exceed a third of those with a right one by as many as are in
-/// this time, in s. Long against a disturbed reading; and a monitor that is wrong in every tick has the output off
-/// within 0.5 ms at 40 kHz, the ticks included after which a wrong voltage is seen and the zero is put out.
+/// Time, in s. The monitor faults once wrong ticks exceed a third of the correct ones by the ticks in this time. It is
+/// long compared with a disturbed reading. If the monitor is wrong in every tick, the output is off within 0.5 ms at
+/// 40 kHz, including the ticks to detect a wrong voltage and to output zero.
 const WRONG_S: f32 = 0.4e-3;
-/// Right ticks that make up for a wrong one. A DAC that holds its last code is right in every other half period of a
-/// square carrier: it is found after three times that time, or in the first half period that is longer. A healthy
-/// amplifier has no wrong tick.
+/// Correct ticks that compensate one wrong tick. A DAC that holds its last code is correct in every other half period
+/// of a square carrier: it is found after three times that time, or in the first half period longer than that. A
+/// healthy amplifier has no wrong ticks.
 const RIGHT_PER_WRONG: u32 = 3;
-/// Two low samples of the ready line, or two high ones where it must be low, are a fault if they are at most this far
-/// apart, in s. A single one is a disturbance: of an opto-isolator or a level shifter at an edge of hundreds of volts
-/// (assumed). A line that stays wrong is found at the next tick.
+/// Largest distance in s of two low samples of the ready line, or two high ones while it must be low, that are a fault.
+/// A single sample is a disturbance, of an opto-isolator or a level shifter at an edge of hundreds of volts (assumed).
+/// A line that stays wrong is found in the next tick.
 const READY_S: f32 = 1e-3;
-/// Ticks between an edge of the enable and the first reading that shows it for a whole tick, one more for an edge that
-/// falls anywhere within its tick.
+/// Ticks between an edge of the enable and the first reading that shows it for a whole tick, plus one for an edge
+/// anywhere within its tick.
 const EDGE_TICKS: u32 = 2;
 
 /// The expected monitor voltage, and the count of ticks at which the monitor read something else.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MonitorCheck {
-    /// What the monitor is expected to read at the next tick.
+    /// Expected reading of the monitor in the next tick.
     expected_v: f32,
     volts_per_code: f32,
     step: f32,
@@ -62,9 +62,9 @@ pub(crate) struct MonitorCheck {
     is_enabled: bool,
     /// Ticks for which the amplifier may still be switching on or off.
     switching_ticks: u32,
-    /// Largest magnitude that the monitor may read while the amplifier switches; zero when it has switched.
+    /// Largest magnitude of a reading while the amplifier switches; zero when it has switched.
     ceiling_v: f32,
-    /// [`RIGHT_PER_WRONG`] for each wrong tick, less one for each right one.
+    /// [`RIGHT_PER_WRONG`] for each wrong tick, minus one for each correct one.
     wrong_count: u32,
     wrong_count_max: u32,
     turn_on_ticks: u32,
@@ -76,11 +76,11 @@ pub(crate) struct MonitorCheck {
     gain: Gain,
 }
 
-/// A reading of the monitor and what was expected.
+/// A reading of the monitor and the expected voltage.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Comparison {
     expected_v: f32,
-    /// The code that was driven, for most of the tick, one tick after that of the reading.
+    /// The driven code, for most of the tick, one tick after that of the reading.
     driven_code: i16,
     deviation_v: f32,
     gain_tolerance_v: f32,
@@ -130,7 +130,7 @@ impl MonitorCheck {
         }
     }
 
-    /// Takes a sample of the ready line, and returns whether it is a fault: the second wrong one in a short time.
+    /// Takes a sample of the ready line, and returns whether it is a fault: the second wrong one within a short time.
     pub(crate) fn is_ready_fault(&mut self, is_ready: bool) -> bool {
         let is_wrong = self.is_ready_wrong(is_ready);
         let is_fault = is_wrong && self.ready_left_ticks > 0;
@@ -148,8 +148,8 @@ impl MonitorCheck {
         }
     }
 
-    /// Compares a reading with the expected voltage, and advances that by the code of the last tick. Returns whether
-    /// [`Self::count`] has to look at the comparison.
+    /// Compares a reading with the expected voltage, and advances the latter by the code of the last tick. Returns
+    /// whether [`Self::count`] has to process the comparison.
     #[inline]
     pub(crate) fn advance(&mut self, driven_code: i16, monitor_v: f32) -> (Comparison, bool) {
         let expected_v = self.expected_v;
@@ -165,7 +165,7 @@ impl MonitorCheck {
         (comparison, !comparison.is_within(self.uncounted_below_v))
     }
 
-    /// Sums up a tick that [`Self::count`] does not look at, and returns whether the gain is a fault.
+    /// Sums up a tick that [`Self::count`] does not process, and returns whether the gain is a fault.
     #[inline]
     pub(crate) fn sum(&mut self, comparison: Comparison) -> bool {
         self.gain.take(comparison)
@@ -193,8 +193,8 @@ impl MonitorCheck {
         self.count_one(is_right)
     }
 
-    /// Counts a right or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so
-    /// that it soon falls again however long the monitor was wrong.
+    /// Counts a correct or a wrong tick, and returns whether there were too many wrong ones. The count is limited, so
+    /// that it falls again soon after the monitor was wrong for any time.
     fn count_one(&mut self, is_right: bool) -> bool {
         self.wrong_count = if is_right {
             self.wrong_count.saturating_sub(1)
@@ -206,7 +206,7 @@ impl MonitorCheck {
     }
 
     fn is_right_while_turning_on(&mut self) -> bool {
-        // The next reading may show what was driven in this tick.
+        // The next reading may show the voltage driven in this tick.
         let driven_v = self.with_tolerance_v(self.expected_v);
         // Not `max`, which is a call on a Cortex-M4F.
         if driven_v > self.ceiling_v {
@@ -255,7 +255,7 @@ impl MonitorCheck {
     }
 
     fn choose_ticks_to_count(&mut self) {
-        // A high line does not trigger `count`, so where high is wrong, every tick is counted.
+        // A high line does not trigger `count`, so every tick is counted where high is wrong.
         let watches_ready = self.ready_while_disabled == ReadyWhileDisabled::Low && !self.is_enabled;
         let counts_all = self.wrong_count > 0 || self.switching_ticks > 0 || watches_ready || self.ready_left_ticks > 0;
         self.uncounted_below_v = if counts_all { f32::NEG_INFINITY } else { self.floor_v };

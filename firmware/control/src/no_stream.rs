@@ -1,4 +1,4 @@
-//! The stream of a firmware without the feature `stream`: there is none, and its player takes no space.
+//! Replacement for streams in a firmware without the feature `stream`: its player takes no space.
 
 use core::marker::PhantomData;
 

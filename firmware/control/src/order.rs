@@ -10,7 +10,7 @@ use crate::{Active, Track};
 
 /// A command from the session to the ticker, which takes at most one before each tick. `'a` is the lifetime of the two
 /// [`Active`] buffers.
-// With a tag of a whole word, the compiler copies an order word by word.
+// With a word-sized tag, the compiler copies an order word by word.
 #[repr(u32)]
 pub enum Order<'a> {
     /// The host has sent a valid frame: restarts the host timeout.
@@ -54,8 +54,8 @@ pub enum Order<'a> {
 }
 
 impl Order<'_> {
-    /// Whether the order restarts the host timeout: one that the session hands over when a frame comes. The others may
-    /// have waited, such as a play behind a commit.
+    /// Whether the order restarts the host timeout because it follows directly from a frame. Other orders may have
+    /// waited, such as a play behind a commit.
     pub fn is_sign_of_life(&self) -> bool {
         matches!(self, Self::HostHeard | Self::Arm | Self::Disarm | Self::Stop | Self::ClearFault)
     }
@@ -75,7 +75,7 @@ pub struct Status {
     pub fault: Option<(Fault, u32)>,
     /// Orders applied since power-on, modulo 2^32. [`Order::HostHeard`], tracks and lifts are not counted.
     pub orders_applied: u32,
-    /// The arm switch was held at the last tick, and was pressed after the reset or the last disarming.
+    /// Whether the arm switch was held at the last tick, and pressed since the reset or the last disarming.
     pub arm_switch: bool,
     /// The ticker's counters.
     pub counters: Counters,

@@ -1,17 +1,17 @@
 //! A stream: samples that the host sends while a scene plays, with a jitter buffer.
 //!
-//! The [`StreamBuffer`] is memory that session and tick share. The session writes samples into it through a
+//! Session and tick share the memory of a [`StreamBuffer`]. The session writes samples into it through a
 //! [`StreamIntake`]; the tick plays them through a [`Player`]. Neither waits for the other.
 //!
-//! A sample has a *position*: its index, counted through all streams, modulo 2^32. A slot of the buffer stores, with
-//! its sample, the round of the ring that the sample belongs to, so that an old sample is not mistaken for the next
-//! one. The round has 16 bits: the check fails only for a slot that was skipped 65,535 times in a row.
+//! A sample has a *position*: its index, counted over all streams, modulo 2^32. Each slot of the buffer stores a sample
+//! with its round of the ring, so that an old sample is not mistaken for the next one. The round has 16 bits: the check
+//! fails only for a slot that was skipped 65,535 times in a row.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 use frixel_layers::StreamSample;
 use frixel_wire::payload::SAMPLES_MAX;
 
-/// Samples that a stream's buffer holds.
+/// Capacity of a stream's buffer, in samples.
 pub const STREAM_LEN: usize = 1024;
 
 const LEN: u32 = STREAM_LEN as u32;
@@ -21,7 +21,7 @@ const FADE_S: f32 = 0.01;
 const ONE: u32 = 1 << 31;
 const VALUE_PER_SAMPLE: f32 = 1.0 / 65_535.0;
 
-/// Samples that the session has written and the tick will read.
+/// Samples written by the session and not yet read by the tick.
 ///
 /// Every slot is an atomic, which costs nothing on a Cortex-M and needs no `unsafe`.
 pub struct StreamBuffer {
@@ -61,7 +61,7 @@ impl StreamBuffer {
     }
 }
 
-/// The round of a position, in the high half. The first round is 1, because a slot that was never filled holds 0.
+/// The round of a position, in the high half. The first round is 1, since an unused slot holds 0.
 #[inline]
 fn round(position: u32) -> u32 {
     (position / LEN + 1) << 16
@@ -84,7 +84,7 @@ pub struct StreamStart {
     pub(crate) start_level: u32,
 }
 
-/// The session's side of a [`StreamBuffer`]: takes the samples that the host sends.
+/// The session's side of a [`StreamBuffer`]: stores the samples sent by the host.
 pub struct StreamIntake<'a> {
     buffer: &'a StreamBuffer,
     /// Position of the current stream's first sample; `None` without a stream.
@@ -111,8 +111,8 @@ impl<'a> StreamIntake<'a> {
         self.first.take().map(|_| self.buffer.end.load(Ordering::Relaxed))
     }
 
-    /// Takes little-endian samples, the first of which has the index `first_index`. Samples that are too late, that do
-    /// not fit, or that arrive without a stream are dropped.
+    /// Stores little-endian samples, the first of which has the index `first_index`. Samples that are late, do not fit,
+    /// or arrive without a stream are dropped.
     pub fn take(&mut self, first_index: u32, samples: &[[u8; 2]]) {
         let Some(first) = self.first else { return };
         let next_position = self.next_position(first);
@@ -144,7 +144,7 @@ impl<'a> StreamIntake<'a> {
         Some((end.wrapping_sub(first), room as u16))
     }
 
-    /// Position that the player needs next: the stream's first one until the player has begun the stream.
+    /// Position that the player needs next: the stream's first one until the player has started the stream.
     fn next_position(&self, first: u32) -> u32 {
         let next = self.buffer.next.load(Ordering::Relaxed);
         if count(first, next) > 0 { next } else { first }
@@ -162,7 +162,7 @@ enum Phase {
 
 /// Plays a stream, one tick at a time.
 pub(crate) struct Player<'a> {
-    /// `None` on a board without a stream buffer: nothing plays then.
+    /// `None` on a board without a stream buffer, which plays nothing.
     buffer: Option<&'a StreamBuffer>,
     phase: Phase,
     start: StreamStart,
@@ -170,13 +170,13 @@ pub(crate) struct Player<'a> {
     last: Option<u32>,
     /// Position of the sample after `to`.
     next: u32,
-    /// The samples before and after the current time, and the fraction of the way from the first to the second.
+    /// The samples before and after the current time, and the fraction of the interval between them.
     from: f32,
     to: f32,
     fraction: u32,
-    /// The next sample has not arrived: `to` still holds the one before.
+    /// Whether the next sample has not arrived, so that `to` still holds the previous one.
     missing: bool,
-    /// Holes of this stream that lie behind `next`: their samples never arrived.
+    /// Holes of this stream before `next`, whose samples never arrived.
     skipped: u32,
     weight: f32,
     fade_step: f32,
@@ -250,7 +250,7 @@ impl<'a> Player<'a> {
         self.phase == Phase::Over && self.weight <= 0.0
     }
 
-    /// Times that the stream ran dry, and runs of samples that never arrived, since power-on.
+    /// Number of underruns, and of runs of samples that never arrived, since power-on.
     pub(crate) fn counts(&self) -> (u32, u32) {
         (self.underruns, self.gaps)
     }
@@ -298,13 +298,13 @@ impl<'a> Player<'a> {
         let span = count(self.next, end);
         let holes = count(self.skipped, buffer.holes.load(Ordering::Relaxed));
         let there = span.saturating_sub(holes);
-        // Without room for another frame, no further sample comes.
+        // Without room for another frame, no further sample arrives.
         let is_full = span + SAMPLES_MAX as u32 > LEN;
         if there >= self.start.start_level || is_full || (span > 0 && self.last == Some(end)) {
             self.phase = Phase::Playing;
             self.take_next();
             if self.weight <= 0.0 {
-                // Start at the first sample: the next tick takes the second.
+                // Start at the first sample; the next tick takes the second.
                 self.fraction = ONE - self.start.step;
             }
         } else if span == 0 && self.last == Some(self.next) {

@@ -7,7 +7,7 @@ use frixel_wire::fault::{Fault, State};
 use crate::monitor::{Comparison, MonitorCheck};
 use crate::{Board, Order, Sense};
 
-/// Host timeout before a scene has set one.
+/// Host timeout until a scene sets one.
 const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
 
 /// State of the supervisor.
@@ -18,8 +18,8 @@ pub(crate) struct Supervisor {
     host_heard_at_tick: u32,
     host_timeout_ticks: u32,
     host_silent: bool,
-    /// The arm switch was open at some tick since the reset or the last disarming: if it is held now, it was pressed
-    /// since.
+    /// Whether the arm switch was open in some tick since the reset or the last disarming. If it is held now, it was
+    /// pressed since.
     switch_was_released: bool,
     monitor: MonitorCheck,
 }
@@ -45,12 +45,12 @@ impl Supervisor {
         self.fault
     }
 
-    /// The host timeout has disarmed the board, and the board has not been armed since.
+    /// Whether the host timeout has disarmed the board, which has not been armed since.
     pub(crate) fn host_silent(&self) -> bool {
         self.host_silent
     }
 
-    /// Applies the orders that change the state. An order that is not allowed in the current state is ignored.
+    /// Applies orders that change the state. An order not allowed in the current state is ignored.
     pub(crate) fn apply(&mut self, order: &Order, now_tick: u32) {
         if order.is_sign_of_life() {
             self.host_heard_at_tick = now_tick;

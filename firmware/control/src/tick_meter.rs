@@ -1,13 +1,13 @@
-//! Memory in which a board counts how long its ticks take.
+//! Memory for the durations of a board's ticks.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use frixel_wire::message::{TICK_TIME_CLASSES, TickTimes};
 
-/// How long the ticks have taken: written by the tick, read by the session.
+/// Durations of the ticks: written by the tick, read by the session.
 ///
-/// Every number is an atomic with one writer, which costs nothing on a Cortex-M and needs no `unsafe`. The session may
-/// read while the tick writes: the numbers are then of two successive ticks.
+/// Every number is an atomic with one writer, which costs nothing on a Cortex-M and needs no `unsafe`. If the session
+/// reads while the tick writes, the numbers are from two successive ticks.
 pub struct TickMeter {
     deadline_cycles: u32,
     worst_cycles: AtomicU32,
@@ -15,7 +15,7 @@ pub struct TickMeter {
 }
 
 impl TickMeter {
-    /// A meter of ticks whose drive is too late after so many cycles.
+    /// A meter of ticks whose drive is late after `deadline_cycles`.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new(deadline_cycles: u32) -> Self {
         Self {
@@ -25,7 +25,7 @@ impl TickMeter {
         }
     }
 
-    /// Counts a tick that took `cycles`, from the beginning of its period. Call this after the drive has been put out.
+    /// Counts a tick that took `cycles` from the start of its period. Call this after the drive was output.
     #[inline]
     pub fn record(&self, cycles: u32) {
         let eighths = cycles.saturating_mul(TICK_TIME_CLASSES as u32).saturating_sub(1);
@@ -38,7 +38,7 @@ impl TickMeter {
         }
     }
 
-    /// What was counted so far, with these missed deadlines.
+    /// The durations so far, with this number of missed deadlines.
     pub fn times(&self, missed_deadlines: u32) -> TickTimes {
         let mut histogram = [0; TICK_TIME_CLASSES + 1];
         for (to, from) in histogram.iter_mut().zip(&self.histogram) {
@@ -64,7 +64,7 @@ mod tests {
         class
     }
 
-    /// With 3,700 cycles, an eighth is no whole number.
+    /// With 3,700 cycles, an eighth is not a whole number.
     #[test]
     fn ticks_are_counted_by_eighths_of_the_deadline_and_late_ones_apart() {
         for deadline_cycles in [3_700, 4_250, 8, 1_000_000] {

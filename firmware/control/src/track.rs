@@ -4,22 +4,22 @@
 /// The estimated path of a finger from one touch report to the next.
 ///
 /// The tracker makes a track from every report with new data; the tick only reads it. The tick computes position and
-/// gain from the ticks since [`Self::from_tick`]: no error accumulates, and a track that arrives late is as accurate as
-/// one that arrives in time.
+/// gain from the ticks since [`Self::from_tick`]. No error accumulates, and a late track is as accurate as a timely
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Track {
-    /// Number of the contact between finger and screen. If it differs from that of the previous track, the finger was
-    /// lifted in between.
+    /// Number of the contact between finger and screen. If it differs from the previous track's, the finger was lifted
+    /// in between.
     pub contact: u32,
-    /// Tick at which the track begins: at which its report arrived or, for a scene without prediction, at which the
-    /// position was measured.
+    /// Tick at which the track begins: the arrival of its report or, for a scene without prediction, the measurement of
+    /// its position.
     pub from_tick: u32,
     /// The track is invalid from this tick on.
     pub until_tick: u32,
     /// Place at `from_tick`, in m from the screen's left and top edge.
     pub place_m: [f32; 2],
-    /// Rate of the place at `from_tick`, in m/s. It differs from the finger's velocity by what leads the place from the
-    /// track before to the new estimate, so that the place does not jump at a report.
+    /// Rate of the place at `from_tick`, in m/s. It differs from the finger's velocity by a correction that leads
+    /// the place from the previous track to the new estimate, so that the place does not jump at a report.
     pub path_velocity_m_per_s: [f32; 2],
     /// Half the rate of that rate, in m/s^2.
     pub path_half_acceleration_m_per_s2: [f32; 2],
@@ -46,8 +46,8 @@ impl Track {
         [x + elapsed_s * (vx + elapsed_s * ax), y + elapsed_s * (vy + elapsed_s * ay)]
     }
 
-    /// Gain on the friction, from 0 to 1: it falls by `fall_per_tick` at every tick and is zero at the end, where the
-    /// touch data is stale.
+    /// Gain on the friction, from 0 to 1. It falls by `fall_per_tick` per tick to zero at the end, where the touch data
+    /// is stale.
     #[inline]
     pub fn gain_before_end(&self, tick: u32, fall_per_tick: f32) -> f32 {
         let gain = fall_per_tick * self.until_tick.wrapping_sub(tick) as f32;

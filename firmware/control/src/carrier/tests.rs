@@ -1,4 +1,4 @@
-//! No direct current, whatever the envelope does.
+//! Tests that no direct current flows for any envelope.
 
 use super::*;
 use proptest::prelude::*;
@@ -20,7 +20,7 @@ fn a_steady_square_alternates_without_early_edges() {
 }
 
 proptest! {
-    /// Amplitudes that move with the carrier are the worst: every half wave of one sign large, of the other small.
+    /// Amplitudes that follow the carrier are the worst case: half waves of one sign are large, and of the other small.
     #[test]
     fn the_integral_stays_within_a_half_period_at_full_voltage(
         sine in any::<bool>(),
@@ -92,7 +92,7 @@ fn a_carrier_starts_a_quarter_period_before_an_edge() {
     }
 }
 
-/// Whatever was driven before, a drive that begins anew takes the charge back that is left.
+/// After any drive, a restart reverses the remaining charge.
 #[test]
 fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
     let timing = timing(Waveform::Square, 20);
@@ -133,7 +133,7 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
     assert_eq!((after.iter().position(|code| *code > 0), positive), (Some(3), 20));
 }
 
-/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit: there the
+/// Every positive half wave is large and every negative one small, so that the integral drifts to its limit. There the
 /// half period ends early, which is counted, and a whole one begins.
 #[test]
 fn an_early_edge_is_counted_with_its_tick() {
@@ -182,8 +182,8 @@ fn a_sine_begins_a_whole_half_wave_at_an_early_edge() {
     assert_eq!(carrier.early_edges(), 1);
 }
 
-/// A new scene may allow less than what has gathered: every code then takes the integral towards zero, with a sixteenth
-/// of the envelope.
+/// A new scene may allow a smaller integral than has accumulated: every code then moves the integral towards zero, with
+/// a sixteenth of the envelope.
 #[test]
 fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
     for start_ticks in [10, 30] {
@@ -201,7 +201,7 @@ fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
             if beyond > 0 {
                 assert!((integral + code).abs() < integral.abs(), "{integral} and {code}");
             }
-            // A whole code is put out only where it takes the integral within its limit.
+            // A whole code is output only if it moves the integral within its limit.
             assert!(code.abs() == 2_000 || code.abs() == 125 && beyond > 0, "{integral} and {code}");
             assert!(code.abs() == 125 || beyond <= 2_000, "{integral} and {code}");
             integral += code;

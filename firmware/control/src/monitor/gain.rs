@@ -1,39 +1,39 @@
-//! The amplifier's gain, from the readings of some milliseconds.
+//! Checks the amplifier's gain over several milliseconds of readings.
 //!
-//! A healthy reading is the expected voltage `e`, an offset of at most [`FLOOR`](super::FLOOR), and an error that is
-//! proportional to `e`, of at most [`GAIN_TOLERANCE`](super::GAIN_TOLERANCE). So the sum of the deviations, weighted
-//! with `e`, has a magnitude of at most
+//! A healthy reading is the expected voltage `e`, plus an offset of at most [`FLOOR`](super::FLOOR), plus an error
+//! proportional to `e`, of at most [`GAIN_TOLERANCE`](super::GAIN_TOLERANCE). The magnitude of the sum of the
+//! deviations, weighted with `e`, is thus at most
 //!
 //! ```text
 //! GAIN_TOLERANCE * sum(e^2) + FLOOR * |sum(e)|
 //! ```
 //!
-//! The tolerance of a single tick is this bound for one tick. Over whole periods of the carrier `sum(e)` is zero, and
-//! only the gain is left. It need not be an exact number of periods: while `sum(e)` is large, the bound is wide.
+//! The tolerance of a single tick is this bound for one tick. Over whole periods of the carrier, `sum(e)` is zero, and
+//! only the gain remains. The number of periods need not be exact: while `sum(e)` is large, the bound is wide.
 
 use super::{Comparison, GAIN_TOLERANCE};
 use crate::Board;
 
-/// Time between two judgements, in s: an eighth of the period of the slowest carrier, so that one of them falls near
-/// each zero of its integral.
+/// Time between two checks, in s: an eighth of the period of the slowest carrier, so that a check is near each zero of
+/// its integral.
 const JUDGED_EVERY_S: f32 = 1e-3;
-/// The sums begin anew after so many judgements. A gain that is off by 40 % is found within 20 ms then: right ticks
-/// before it hide it for at most five eighths of the 10 ms, and the slowest carrier is balanced twice in the 10 ms
-/// that follow.
+/// Number of checks after which the sums restart. A gain that is off by 40 % is then found within 20 ms: earlier
+/// correct ticks hide it for at most five eighths of the 10 ms, and the slowest carrier is balanced twice in the next
+/// 10 ms.
 const JUDGEMENTS: u32 = 10;
-/// The sums are judged once the sum of the squared drive reaches that of a constant drive at the offset's tolerance for
-/// this time. Below, noise and steps of the ADC are not small against a quarter of the drive. A quarter of the 10 ms, so
-/// that the mean drive must have half of the offset's tolerance: 4 V rms of 200 V.
+/// The sums are checked once the sum of the squared drive reaches that of a constant drive at the offset's tolerance
+/// for this time. Below, noise and ADC steps are not small compared with a quarter of the drive. It is a quarter of the
+/// 10 ms, so that the mean drive must be half of the offset's tolerance: 4 V rms of 200 V.
 const JUDGED_FROM_S: f32 = 2.5e-3;
-/// Codes are divided by two to this power, so that the squares of 10 ms fit into 32 bits up to 100,000 ticks a second.
+/// Codes are divided by two to this power, so that the squares of 10 ms fit into 32 bits up to a tick rate of 100 kHz.
 const SHIFT: u32 = 4;
 
-/// Sums over the ticks that were right, since the last beginning.
+/// Sums over correct ticks since the last restart.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
     /// Expected voltages times deviations, V^2.
     deviation_v2: f32,
-    /// Codes, in units of 2^[`SHIFT`]. Integers, because a Cortex-M0+ adds no floating-point numbers.
+    /// Codes, in units of 2^[`SHIFT`]. Integers, because a Cortex-M0+ does not add floating-point numbers in hardware.
     drive: i32,
     /// Squares of the same.
     square: u32,
@@ -44,7 +44,7 @@ pub(super) struct Gain {
     judged_from: u32,
     /// Tolerance of an offset, as a code in the same units.
     offset: i32,
-    /// Squares of codes in the same units, in a square volt.
+    /// Squared codes in the same units per squared volt.
     squares_per_v2: f32,
 }
 
@@ -61,13 +61,13 @@ impl Gain {
             left_judgements: JUDGEMENTS,
             judged_every_ticks,
             judged_from: (offset * offset) as u32 * board.ticks(JUDGED_FROM_S).max(1),
-            // Rounded up, so that rounding makes it no tighter than a single tick's tolerance.
+            // Rounded up, so that it is not tighter than a single tick's tolerance.
             offset: offset as i32 + 1,
             squares_per_v2: codes_per_v * codes_per_v,
         }
     }
 
-    /// Sums up a tick, and returns whether the sums show a gain that is a fault.
+    /// Sums up a tick, and returns whether the sums show a faulty gain.
     #[inline]
     pub(super) fn take(&mut self, comparison: Comparison) -> bool {
         let Comparison { expected_v, driven_code, deviation_v, .. } = comparison;

@@ -1,5 +1,5 @@
-//! What the monitor check takes for a healthy amplifier, and in which time it finds a broken one. `frixel-session`
-//! (`safety`) tests that the board stops then.
+//! Tests which amplifiers the monitor check accepts as healthy, and how quickly it detects a broken one.
+//! `frixel-session` (`safety`) tests that the board then stops.
 //!
 //! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC
 //! latches the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", unread). The monitor's ADC takes 2.5
@@ -17,7 +17,7 @@ const STEPS_PER_US: u32 = 5;
 const TICK_STEPS: u32 = 25 * STEPS_PER_US;
 const ENABLE_STEP: u32 = 10 * STEPS_PER_US;
 const LATCH_STEP: u32 = 24 * STEPS_PER_US;
-/// The latest and the earliest step of a tick in which the ADC samples what the next reading shows.
+/// The latest and the earliest step of a tick in which the ADC samples the next reading.
 const SAMPLE_STEPS: [u32; 2] = [3, TICK_STEPS - 9];
 
 /// A board like the NUCLEO-G474RE's: an amplifier of 20 kHz that takes 1 ms to switch.
@@ -32,7 +32,7 @@ const BOARD: Board = Board {
     ..Board::SIMULATOR
 };
 
-/// How the output of a disabled amplifier goes to zero.
+/// Decay of a disabled amplifier's output.
 #[derive(Clone, Copy, Debug)]
 enum Decay {
     Linear {
@@ -57,7 +57,7 @@ const DECAYS: [Decay; 3] = [
 #[derive(Clone, Copy, Debug)]
 struct Plant {
     gain: f32,
-    /// What the monitor shows at 0 V.
+    /// Reading of the monitor at 0 V.
     offset_v: f32,
     turn_on_steps: u32,
     turn_off_steps: u32,
@@ -70,7 +70,7 @@ struct Plant {
     electrode_v: f32,
     enable: bool,
     since_edge_steps: u32,
-    /// Part of the distance to the DAC's voltage that the output covers in a step.
+    /// Fraction of the distance to the DAC's voltage covered by the output in a step.
     lag: f32,
     is_on: bool,
 }
@@ -138,7 +138,7 @@ impl Bench {
         Self { plant, check: MonitorCheck::new(&BOARD), code: 0, faults: 0, most_wrong: 0, ticks: 0 }
     }
 
-    /// A tick that puts out `code`, or nothing.
+    /// A tick that outputs `code`, or nothing.
     fn tick(&mut self, code: Option<i16>) {
         self.run(0, SAMPLE_STEPS[0]);
         let (comparison, must_count) = self.check.advance(self.code, self.plant.sampled_v);
@@ -172,7 +172,7 @@ impl Bench {
         }
     }
 
-    /// A square carrier for so many ticks.
+    /// A square carrier for a number of ticks.
     fn square(&mut self, ticks: u32, amplitude: i16, half_period_ticks: u32) {
         for tick in 0..ticks {
             let is_positive = (tick / half_period_ticks).is_multiple_of(2);

@@ -14,7 +14,7 @@ const FULL_SCALE_V: f32 = 250.0;
 /// Wrong ticks that are a fault.
 const WRONG_TICKS: u32 = 16;
 
-/// A monitor voltage, with nothing else to remark.
+/// A monitor voltage with otherwise normal inputs.
 fn reading(monitor_v: f32) -> Sense {
     Sense { monitor_v, arm_switch: true, ..Sense::default() }
 }
@@ -59,7 +59,7 @@ fn driven_v(dac_code: i16) -> f32 {
     f32::from(dac_code) * FULL_SCALE_V / 32_767.0
 }
 
-/// Ticks with this reading until the supervisor faults, `limit` at most.
+/// Number of ticks with this reading until the supervisor faults, at most `limit`.
 fn ticks_to_fault(supervisor: &mut Supervisor, monitor_v: f32, dac_code: i16, limit: u32) -> Option<u32> {
     (1..=limit).find(|_| {
         supervisor.check(&reading(monitor_v), DacCode::from_bits(dac_code));
@@ -67,7 +67,7 @@ fn ticks_to_fault(supervisor: &mut Supervisor, monitor_v: f32, dac_code: i16, li
     })
 }
 
-/// A quarter of what is driven and a twenty-fifth of full scale, to both sides of both signs.
+/// A quarter of the driven voltage plus a twenty-fifth of full scale, on both sides of both signs.
 #[test]
 fn the_monitor_may_be_off_by_its_tolerance_and_no_more() {
     for dac_code in [0, 6_553, -6_553, 26_213, -26_213] {
@@ -118,7 +118,7 @@ fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
     }
 }
 
-/// However long it lasted.
+/// Independent of its duration.
 #[test]
 fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
     let mut supervisor = driving(0);
@@ -157,7 +157,7 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
     }
 }
 
-/// A ready line that is low at these ticks.
+/// A ready line that is low in these ticks.
 fn ready_low_at(supervisor: &mut Supervisor, ticks: u32, low_at: &[u32]) -> Option<u32> {
     (0..ticks).find(|tick| {
         supervisor.check(&Sense { amplifier_fault: low_at.contains(tick), ..reading(0.0) }, DacCode::ZERO);
@@ -194,7 +194,7 @@ fn an_amplifiers_fault_counts_in_every_state() {
     }
 }
 
-/// Every order in every state: what is not in this table changes nothing.
+/// Every order in every state: an order that is not in this table changes nothing.
 #[test]
 fn orders_change_the_state_as_the_table_says() {
     let changes = [
@@ -228,7 +228,7 @@ fn ticks_to_silence(mut supervisor: Supervisor, heard_at_tick: u32, limit: u32) 
     })
 }
 
-/// A quarter of a second before a scene has said otherwise, also where the tick counter wraps.
+/// A quarter of a second until a scene sets another, also where the tick counter wraps.
 #[test]
 fn a_silent_host_disarms_after_its_timeout() {
     for heard_at_tick in [0, 7, u32::MAX - 10_000, u32::MAX - 5, u32::MAX] {
@@ -302,7 +302,7 @@ fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
 }
 
 proptest! {
-    /// Whatever happens, a fault is left only by clearing it, and nothing but an order leads to more than Disarmed.
+    /// A fault is left only by clearing it, and only an order leads beyond Disarmed.
     #[test]
     fn only_orders_lead_to_a_state_that_drives(
         inputs in proptest::collection::vec((any::<bool>(), any::<bool>(), -300.0_f32..300.0, any::<i16>()), 1..200),

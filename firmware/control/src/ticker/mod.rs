@@ -1,24 +1,24 @@
 //! The tick: a finger's track and the board's inputs in, a DAC code out.
 //!
-//! # What stops the output
+//! # Conditions for zero output
 //!
 //! The output is zero in every tick in which one of these holds:
 //!
-//! - The state is not Active. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it: an armed or active board
-//!   needs a host. A fault leaves it in the tick that detects it: the arm switch ([`Sense`]) at once; the amplifier's
-//!   ready line at its second wrong sample within a millisecond; the monitor voltage once wrong ticks exceed right ones
-//!   by those of 0.4 ms (at once after the enable has fallen), or once the gain over some milliseconds is off by more
-//!   than a quarter; and a fault that the board detects by [`Ticker::raise`].
+//! - The state is not Active. [`Order::Stop`], [`Order::Disarm`] and the host timeout leave it: an armed or active
+//!   board needs a host. A fault leaves it in the tick that detects it: the arm switch ([`Sense`]) at once, the
+//!   amplifier's ready line at its second wrong sample within a millisecond, a fault of the board's own by
+//!   [`Ticker::raise`]. The monitor voltage is a fault once wrong ticks exceed a third of the correct ones by 0.4 ms
+//!   (at once after the enable has fallen), or once the gain over some milliseconds is off by more than a quarter.
 //! - No finger has a valid track: after [`Order::Lift`], and when a track expires. A [`Track`] of another contact than
 //!   the previous one counts as a lift: zero in the tick that takes it.
 //! - There is no scene ([`Order::Unload`]). [`Order::Load`] of another scene lowers the envelope to the new voltage
 //!   limit at once.
 //!
-//! # What limits the output
+//! # Limits of the output
 //!
 //! The coefficients of every scene are lowered to the board's [`Ceilings`] before the first tick that uses them, and no
-//! code is above that of the coefficients. So the ceilings hold whatever the session orders. No host timeout is above
-//! its ceiling, and no track lasts longer than the board's touch data.
+//! code exceeds the coefficients. The ceilings thus hold for all orders of the session. Host timeouts are limited to
+//! their ceiling, and tracks to the lifetime of the board's touch data.
 //!
 //! A stream that starts while the state is not Active is stopped at the next tick.
 
@@ -44,13 +44,13 @@ use crate::{Active, Board, Ceilings, Drive, Sense, Track};
 pub struct Ticker<'a> {
     timing: Timing,
     ceilings: Ceilings,
-    /// The current scene's coefficients were above the ceilings.
+    /// Whether the current scene's coefficients were above the ceilings.
     is_clamped: bool,
     tick: u32,
     /// Can stop the output.
     supervisor: Supervisor,
     finger: Finger,
-    /// The finger was lifted since the last tick, even if another has touched the screen since.
+    /// Whether the finger was lifted since the last tick, even if another has touched the screen since.
     was_lifted: bool,
     /// Coefficients of the current scene.
     active: &'a mut Active,
@@ -74,7 +74,7 @@ pub struct Ticker<'a> {
 #[derive(Clone, Copy)]
 struct Timing {
     tick_period_s: f32,
-    /// Longest time for which a track is followed, even if its own end is later.
+    /// Longest time for which a track is followed, even if it ends later.
     track_ticks_max: u32,
     /// See [`Track::gain_before_end`].
     fall_per_tick: f32,
@@ -139,16 +139,16 @@ impl<'a> Ticker<'a> {
     /// [`Ticker::raise`] with [`Fault::Deadline`](frixel_wire::fault::Fault::Deadline). The tick does not allocate,
     /// wait or panic, and runs the same steps in the same order while the output is enabled; its duration depends on
     /// the layers under the finger.
-    // Not inlined: a caller that is built for size would compile the tick for size too, and make it slow.
+    // Not inlined: a caller that is built for size would otherwise compile the tick for size, which is slow.
     #[inline(never)]
     pub fn tick(&mut self, sense: &Sense) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         self.arm_switch = sense.arm_switch;
 
-        // Leave if anything stops the output: a fault (amplifier, monitor, arm switch, or raised by the board), no
-        // Active state (Stop, Disarm, host timeout), no track (lift, expiry), no scene. The supervisor and the finger
-        // come first, so that what they find at this tick stops the output at this tick; and a lift is taken in any
-        // state, so that none is left for a later play.
+        // Return if anything stops the output: a fault (amplifier, monitor, arm switch, or raised by the board), a
+        // state other than Active (Stop, Disarm, host timeout), no track (lift, expiry), no scene. The supervisor and
+        // the finger come first, so that their findings stop the output in this tick. A lift is taken in any state, so
+        // that none is left for a later play.
         let driven_code = self.dac_code;
         self.supervisor.check(sense, driven_code);
         self.supervisor.expire(self.tick);
@@ -167,7 +167,7 @@ impl<'a> Ticker<'a> {
         self.inputs.velocity_m_per_s = track.velocity_m_per_s(elapsed_s);
         let gain = track.ramp.gain_at(self.tick) * track.gain_before_end(self.tick, self.timing.fall_per_tick);
         let friction_n = gain * self.active.electric_friction_n(&self.inputs, self.pool, &mut self.clicks);
-        // Zero for a friction that is not a number.
+        // Zero for a NaN friction.
         let table_v_rms = table.voltage_v_rms(friction_n);
         let max_v_rms = self.active.voltage_max_v_rms;
         let target_v_rms = if table_v_rms < max_v_rms { table_v_rms } else { max_v_rms };
@@ -186,8 +186,8 @@ impl<'a> Ticker<'a> {
         Drive { dac_code, amplifier_enable: true }
     }
 
-    /// Seconds from the beginning of the track to this tick; 0 without prediction, so that the finger stays where it
-    /// was measured.
+    /// Seconds from the start of the track to this tick; 0 without prediction, so that the finger stays at its measured
+    /// position.
     #[inline]
     fn elapsed_s(&self, track: &Track) -> f32 {
         if self.active.prediction { track.elapsed_s(self.tick, self.timing.tick_period_s) } else { 0.0 }
@@ -210,8 +210,8 @@ impl<'a> Ticker<'a> {
     }
 }
 
-/// Whether a friction is above the table's maximum, negative or not a number. As an unsigned integer, the bit pattern
-/// of a negative number exceeds that of every positive number, and so does not-a-number. Minus zero is within reach.
+/// Whether a friction is above the table's maximum, negative or NaN. As an unsigned integer, the bit pattern of a
+/// negative number or NaN exceeds that of every positive number. Minus zero is within reach.
 #[inline]
 fn is_out_of_reach(electric_friction_n: f32, table: &InverseTable) -> bool {
     electric_friction_n.to_bits() > table.electric_friction_max_n().to_bits() && electric_friction_n != 0.0

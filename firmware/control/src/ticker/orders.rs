@@ -1,4 +1,4 @@
-//! Applies the session's orders and the faults that the board raises.
+//! Applies the session's orders and the faults raised by the board.
 
 use frixel_wire::fault::Fault;
 
@@ -24,7 +24,7 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Applies an order that is not about the finger.
+    /// Applies an order that does not concern the finger.
     #[inline(never)]
     fn apply_host_order(&mut self, order: Order<'a>) -> Option<&'a mut Active> {
         if order.is_counted() {
@@ -40,7 +40,7 @@ impl<'a> Ticker<'a> {
             }
             Order::SetLayer { layer, on, gain } => {
                 self.active.set_layer(layer, on, gain, self.tick.wrapping_add(1));
-                // A layer that is enabled under the finger must not click: the finger did not slide into it.
+                // A layer enabled under the finger must not click, since the finger did not slide into it.
                 self.clicks.lift();
             }
             #[cfg(feature = "stream")]
@@ -83,8 +83,8 @@ impl<'a> Ticker<'a> {
         }
     }
 
-    /// Latches a hard fault that the board has detected: the output is zero from the next tick on. If a fault is
-    /// already latched, that one stays reported, because it came first.
+    /// Latches a hard fault detected by the board: the output is zero from the next tick on. A fault that is already
+    /// latched stays reported, since it came first.
     #[inline]
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         if fault == Fault::Deadline {

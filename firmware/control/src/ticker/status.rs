@@ -15,7 +15,7 @@ impl Ticker<'_> {
     }
 
     /// Whether the arm switch must be released, and then pressed, before the board can be armed. A board without a
-    /// person at a switch, such as a simulated one, holds the switch whenever this is `false`, so that the host alone
+    /// person at a switch, such as a simulated one, holds the switch whenever this is `false`, so that only the host
     /// decides.
     pub fn waits_for_release(&self) -> bool {
         self.supervisor.state() == State::Disarmed && !self.supervisor.switch_was_released()
@@ -43,7 +43,7 @@ impl Ticker<'_> {
         }
     }
 
-    /// Where the finger was at the last tick; zero without one.
+    /// Position of the finger at the last tick; zero without a finger.
     fn place_m(&self) -> [f32; 2] {
         self.finger.track().map_or([0.0; 2], |track| track.place_m(self.elapsed_s(track)))
     }

@@ -1,4 +1,4 @@
-//! The tick as the last line: whatever coefficients and orders it is given, it stays within the board's ceilings.
+//! Tests the tick as the last line of defence: it stays within the board's ceilings for all coefficients and orders.
 
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Waveform};
 use frixel_model::{Finger as FingerModel, InverseTable};
@@ -43,7 +43,7 @@ fn active(carrier: CarrierTiming, slew_step_v: f32, voltage_max_v_rms: f32, host
     active
 }
 
-/// Amplifier, monitor and person as a healthy board has them.
+/// Amplifier, monitor and person of a healthy board.
 struct Rig<'a> {
     ticker: Ticker<'a>,
     monitor: frixel_testkit::IdealMonitor,
@@ -119,7 +119,7 @@ fn coefficients_at_the_ceilings_are_kept_and_not_flagged() {
     }
 }
 
-/// A number as it may stand in memory that nobody has checked.
+/// An arbitrary number, as in unchecked memory.
 fn any_number() -> impl Strategy<Value = f32> {
     prop_oneof![any::<f32>(), -10.0_f32..1e4, Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX)]
 }
@@ -127,9 +127,8 @@ fn any_number() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// No code is above the board's, no drive is longer than a second without a sign of life, and none is longer than
-    /// 40 ms without a touch report: whatever the coefficients, whatever the layer's gain, and whatever is loaded while
-    /// it plays.
+    /// For all coefficients, gains and scenes loaded during a play: no code is above the board's, no drive lasts longer
+    /// than a second without a sign of life, and none longer than 40 ms without a touch report.
     #[test]
     fn nothing_drives_beyond_the_ceilings(
         waveform in prop_oneof![Just(Waveform::Square), Just(Waveform::Sine)],
