@@ -1,7 +1,7 @@
-//! The command handler: dispatches the frames of the host to the four parts of the session, and answers them.
+//! The command handler: dispatches the host's frames to the four parts of the session, and answers them.
 //!
-//! The parts do not know one another. The command handler asks one for a value and passes it to the next; orders of
-//! [`Scenes`] go through the [`Orders`](crate::states::Orders) of [`States`].
+//! The parts are independent. The command handler passes values between them; orders of [`Scenes`] go through the
+//! [`Orders`](crate::states::Orders) of [`States`].
 
 use frixel_control::{Active, Board, Order, Status, TickMeter};
 use frixel_layers::BitmapPool;
@@ -23,7 +23,7 @@ pub(crate) struct Commands<'a> {
     pub(crate) scenes: Scenes<'a>,
     pub(crate) motion: Motion,
     pub(crate) states: States<'a>,
-    /// How long the ticks have taken; `None` on a board that does not measure it.
+    /// Durations of the ticks; `None` on a board that does not measure them.
     pub(crate) tick_meter: Option<&'a TickMeter>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Takes one frame's payload.
+    /// Processes one frame's payload.
     pub(crate) fn take(&mut self, payload: Result<Payload, ParseError>, status: &Status) {
         self.report_state(status);
         match payload {
@@ -56,7 +56,7 @@ impl<'a> Commands<'a> {
             }
             Ok(Payload::Samples { first_index, samples }) => {
                 self.states.host_heard();
-                // Samples behind a `StartStream` that waits for a commit belong to a stream that has not begun.
+                // Samples after a `StartStream` that waits for a commit belong to a stream that has not begun.
                 if cfg!(feature = "stream") && !self.link.has_waiting_stream() {
                     self.scenes.stream.take(first_index, samples);
                 }
@@ -67,13 +67,13 @@ impl<'a> Commands<'a> {
                 self.states.host_heard();
                 self.link.answer(sequence, Err(Refusal::UnknownCommand), self.states.state());
             }
-            // Ignore frames that only a board sends, and frames that cannot be parsed.
+            // Ignore frames that only a board sends, and invalid frames.
             Ok(Payload::Hello(_) | Payload::FromBoard(_)) | Err(_) => {}
         }
     }
 
     /// Begins a session with a new client: resets the credit, drops an unfinished upload or commit, and disarms the
-    /// board, because the previous client is gone.
+    /// board, since the previous client is gone.
     fn handle_hello(&mut self, status: &Status) {
         self.states.disarm_for_new_client();
         self.end_stream_unless_active();
@@ -85,8 +85,8 @@ impl<'a> Commands<'a> {
         self.link.send_hello(&hello(&self.board, status, self.states.state(), &self.scenes));
     }
 
-    /// Carries a request out, or keeps it until the commit under way has ended. A Stop or a Disarm never waits, and
-    /// refuses the requests that do: an Arm or a Play that was sent before it must not take effect after it.
+    /// Executes a request, or keeps it until the current commit ends. Stop and Disarm never wait, and refuse waiting
+    /// requests: an earlier Arm or Play must not take effect after them.
     fn take_request(&mut self, request: Request, status: &Status) {
         if matches!(request.command, Command::Stop | Command::Disarm) {
             self.link.refuse_waiting(self.states.state());
@@ -99,7 +99,7 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Carries a request out, and answers it. A commit is only begun.
+    /// Executes a request and answers it, or begins a commit.
     fn carry_out(&mut self, Request { sequence, command }: Request, status: &Status) {
         if let Command::Commit { crc32 } = command {
             self.link.commit_begins(sequence);
@@ -128,7 +128,7 @@ impl<'a> Commands<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => scenes.end_upload(),
-            // `carry_out` handles a commit; it does not get here.
+            // `carry_out` handles a commit before.
             Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => link.subscribe(period_ticks),
             Command::Touch { .. } | Command::Lift | Command::TouchFinger { .. } | Command::LiftFinger { .. }
@@ -175,11 +175,11 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Does what is due at a tick: forgets what is too old, reports a change of state that the host did not request,
-    /// does the next step of a commit or carries out the first of the requests that waited for it, and reports.
+    /// Does the work due at a tick: drops outdated data, reports unrequested changes of state, advances a commit or
+    /// executes the first request that waited for it, and sends reports.
     pub(crate) fn poll(&mut self, status: &Status) {
         self.motion.expire(status.telemetry.tick);
-        // First, so that a request that waited for the commit meets the state that the board is in.
+        // First, so that a request that waited for the commit sees the board's current state.
         self.report_state(status);
         self.step_commit(status);
         self.report_stream(status);
@@ -208,21 +208,22 @@ impl<'a> Commands<'a> {
         let state = self.states.state();
         let fault = status.fault.filter(|_| state == State::Faulted).map(|(fault, _)| fault);
         self.link.report_state(state, fault, Flags(status.telemetry.flags.0 & Flags::HOST_SILENT.0));
-        // An Arm or a Play that was sent before the board disarmed itself must not take effect after it.
+        // An Arm or a Play sent before the board disarmed itself must not take effect afterwards.
         if matches!(state, State::Disarmed | State::Faulted) {
             self.link.refuse_waiting(state);
         }
     }
 
-    /// Takes no more samples of a stream unless the scene plays. No order: the ticker does the same on its own.
+    /// Stops taking samples of a stream unless the scene plays. Needs no order, since the ticker does the same on its
+    /// own.
     fn end_stream_unless_active(&mut self) {
         if self.states.state() != State::Active {
             let _ = self.scenes.stream.end();
         }
     }
 
-    /// Reports the progress of the stream if that is due and the transmit queue is not too full; otherwise, the next
-    /// call tries again.
+    /// Reports the progress of the stream if a report is due and the transmit queue has room; otherwise, the next call
+    /// tries again.
     fn report_stream(&mut self, status: &Status) {
         let now_tick = status.telemetry.tick;
         let period_ticks = self.board.ticks(PROGRESS_PERIOD_S);
@@ -239,14 +240,14 @@ impl<'a> Commands<'a> {
         self.states.next_order(|| self.motion.next_order(predicts))
     }
 
-    /// Commits a scene of the board's own at once.
+    /// Commits one of the board's own scenes at once.
     pub(crate) fn commit_own(&mut self, scene: &[u8]) -> Result<(), Refusal> {
         self.scenes.commit_own(scene, &self.board, &mut self.states.orders)
     }
 }
 
-/// Whether a request may be carried out while an earlier commit is under way, or while requests wait behind one: its
-/// effects do not depend on theirs, except that Stop and Disarm end what waits (see [`Commands::take_request`]).
+/// Whether a request may be executed during an earlier commit, or while requests wait for one. Its effects are
+/// independent of theirs, except that Stop and Disarm end waiting requests (see [`Commands::take_request`]).
 fn may_overtake_a_commit(command: Command) -> bool {
     matches!(
         command,
@@ -263,7 +264,7 @@ fn may_overtake_a_commit(command: Command) -> bool {
     )
 }
 
-/// The piece of a fault's text that begins at `offset`.
+/// The piece of a fault's text at `offset`.
 fn fault_text(text: &[u8], offset: u8) -> Accepted {
     let rest = text.get(..text.len().min(FAULT_TEXT_MAX_LEN)).and_then(|text| text.get(usize::from(offset)..));
     let mut bytes = [0; FAULT_TEXT_PIECE_LEN];

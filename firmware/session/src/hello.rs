@@ -1,4 +1,4 @@
-//! The hello: what the board says of itself.
+//! The hello: the board's description of itself.
 
 use frixel_control::{Board, Status};
 use frixel_wire::fault::State;

@@ -1,14 +1,14 @@
-//! The part of the firmware without a hard deadline: a [`Session`] turns bytes from a host into scenes, and touch
-//! reports into [`Track`](frixel_control::Track)s. A [`Ticker`](frixel_control::Ticker) turns the track into voltage,
-//! one tick at a time.
+//! The part of the firmware without hard deadlines: a [`Session`] turns a host's bytes into scenes, and touch reports
+//! into [`Track`](frixel_control::Track)s. A [`Ticker`](frixel_control::Ticker) turns the track into voltage, one tick
+//! at a time.
 //!
-//! The two run at different priorities on a board and never share mutable state. They exchange values:
-//! [`Order`](frixel_control::Order)s from the session to the ticker, one before each tick, a
-//! [`Status`](frixel_control::Status) back, and the two [`Active`](frixel_control::Active) buffers, which are passed by
-//! reference, so that the whole scene is swapped at a tick boundary. The [`BitmapPool`](frixel_layers::BitmapPool) is
-//! memory that both share, made of single bytes: the session writes only bytes that the ticker does not read.
+//! The two run at different priorities on a board and share no mutable state. They exchange values:
+//! [`Order`](frixel_control::Order)s from the session to the ticker, one before each tick; a
+//! [`Status`](frixel_control::Status) back; and the two [`Active`](frixel_control::Active) buffers, which are passed by
+//! reference, so that a whole scene is swapped at a tick boundary. The [`BitmapPool`](frixel_layers::BitmapPool) is
+//! shared memory of single bytes: the session writes only bytes that the ticker does not read.
 //!
-//! A board, a simulator and a test all call them in the same way:
+//! A board, a simulator and a test call them in the same way:
 //!
 //! ```
 //! use frixel_control::{Active, Board, Sense, Ticker};
@@ -32,8 +32,8 @@
 //!
 //! # Modules
 //!
-//! `session` turns bytes into frames and back. `commands` dispatches the frames to four parts, which do not know one
-//! another, and passes values between them:
+//! `session` turns bytes into frames and back. `commands` dispatches the frames to four independent parts, and passes
+//! values between them:
 //!
 //! | part | takes | gives |
 //! |---|---|---|
@@ -43,14 +43,14 @@
 //! | `states` | orders, commands that arm and play, the ticker's status | refusals, changes of state, the next order |
 //!
 //! `scene` puts its orders into the queue of `states`. `hello` describes the board. `queues` connects a session in a
-//! main loop with a ticker in an interrupt. `store` keeps the measured limits over power-off.
+//! main loop with a ticker in an interrupt. `store` keeps measured limits across power-off.
 //!
 //! # Cargo features
 //!
-//! Every Cargo feature is something that a scene or a host may use, and all are enabled by default: the kinds of layers
-//! (`edge` has buttons, too), `polygon` regions, the `sine-carrier` and `telemetry`. An image without one of them
-//! is smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses,
-//! all blends and the square carrier are always included.
+//! Every Cargo feature is an ability of scenes or hosts, and all are enabled by default: the kinds of layers (`edge`
+//! includes buttons), `polygon` regions, the `sine-carrier` and `telemetry`. An image without a feature is smaller,
+//! clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends
+//! and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

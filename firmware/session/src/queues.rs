@@ -5,7 +5,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::Session;
 
-/// Length of the queue of orders; the queue keeps one place free. Further orders wait in the session.
+/// Length of the queue of orders, of which one place stays free. Further orders wait in the session.
 const ORDERS_LEN: usize = 5;
 
 /// Memory of the queues.
@@ -47,13 +47,13 @@ impl Queues {
 }
 
 impl SessionEnds {
-    /// The ticker's status, of the first tick after the last call that returned one; `None` until that tick has run.
+    /// The ticker's status after the first tick since the last returned status; `None` until that tick has run.
     pub fn next_status(&mut self) -> Option<Status> {
         self.statuses.dequeue()
     }
 
-    /// Passes the session's orders to the ticker while there is room, and returns to the session the coefficients that
-    /// the ticker no longer uses. `prepare` sees each order before the ticker does.
+    /// Passes the session's orders to the ticker while there is room, and returns unused coefficients of the ticker to
+    /// the session. `prepare` sees each order before the ticker does.
     pub fn exchange(&mut self, session: &mut Session<'static>, mut prepare: impl FnMut(&Order<'static>)) {
         while self.orders.ready()
             && let Some(order) = session.next_order()
@@ -86,7 +86,7 @@ impl TickEnds {
         }
     }
 
-    /// Passes on the ticker's status, if the session has taken the one before. Call this after each tick.
+    /// Passes on the ticker's status if the session has taken the previous one. Call this after each tick.
     #[inline]
     pub fn offer_status(&mut self, ticker: &Ticker<'static>) {
         if self.statuses.ready() {

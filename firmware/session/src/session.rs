@@ -36,14 +36,14 @@ impl<'a> Session<'a> {
     }
 
     /// Takes bytes from the serial line. Fetch answers with [`Session::transmit`] and orders with
-    /// [`Session::next_order`]. [`Session::poll`] carries out a commit step by step: pings, touches and stops that
-    /// arrive meanwhile are served at once, and requests that depend on the commit's outcome wait for it in a queue.
+    /// [`Session::next_order`]. [`Session::poll`] executes a commit step by step: pings, touches and stops that arrive
+    /// meanwhile are served at once, and requests that depend on the commit's outcome wait in a queue.
     ///
-    /// Frames beyond the host's credit are discarded and have no effect; they do not restart the host timeout either.
-    /// Only a hello request needs no credit.
+    /// Frames beyond the host's credit are discarded without effect; they do not restart the host timeout either. Only
+    /// a hello request needs no credit.
     pub fn receive(&mut self, mut bytes: &[u8], status: &Status) {
         while !bytes.is_empty() {
-            // To the end of a frame, good or bad: a zero byte ends both.
+            // Up to the end of a valid or invalid frame, which is a zero byte.
             let piece_len = bytes.iter().position(|byte| *byte == 0).map_or(bytes.len(), |zero| zero + 1);
             let (mut piece, rest) = bytes.split_at(piece_len);
             bytes = rest;
@@ -58,9 +58,9 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Advances a commit by one step of about a millisecond at most, or carries out a request that waited for it; also
+    /// Advances a commit by one step of about a millisecond at most, or executes a request that waited for it; also
     /// sends telemetry and unsolicited changes of state. Call this after every tick or, if there is no time for that,
-    /// at least once a telemetry period, and pass on touch reports, orders and bytes between two calls.
+    /// at least once per telemetry period, and pass on touch reports, orders and bytes between two calls.
     pub fn poll(&mut self, status: &Status) {
         self.commands.poll(status);
     }
@@ -75,13 +75,13 @@ impl<'a> Session<'a> {
         self.commands.next_order()
     }
 
-    /// Takes back the coefficients that [`Ticker::apply`] returned.
+    /// Takes back the coefficients returned by [`Ticker::apply`].
     pub fn take_back(&mut self, spare: &'a mut Active) {
         self.commands.scenes.take_back(spare);
     }
 
-    /// Passes the next order to a ticker on the same thread, and takes back the coefficients that it returns. Returns
-    /// whether there was an order. A board whose tick is an interrupt puts a queue between [`Session::next_order`] and
+    /// Passes the next order to a ticker on the same thread, and takes back the returned coefficients. Returns whether
+    /// there was an order. A board whose tick is an interrupt uses a queue between [`Session::next_order`] and
     /// [`Ticker::apply`].
     pub fn hand_order_to(&mut self, ticker: &mut Ticker<'a>) -> bool {
         let Some(order) = self.next_order() else { return false };
@@ -96,7 +96,7 @@ impl<'a> Session<'a> {
         self.commands.link.transmit(bytes)
     }
 
-    /// The supervisor's state once the ticker has applied every order so far.
+    /// The supervisor's state after the ticker has applied all orders.
     pub fn state(&self) -> State {
         self.commands.states.state()
     }
@@ -106,8 +106,8 @@ impl<'a> Session<'a> {
         self.commands.scenes.header()
     }
 
-    /// Commits a scene of the board's own at once: one without bitmaps, for bring-up or self-test. A host uploads and
-    /// commits it by messages.
+    /// Commits one of the board's own scenes at once: without bitmaps, for bring-up or self-test. A host uploads and
+    /// commits a scene by messages.
     pub fn commit_own(&mut self, scene: &[u8]) -> Result<(), Refusal> {
         self.commands.commit_own(scene)
     }

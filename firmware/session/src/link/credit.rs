@@ -1,12 +1,12 @@
 //! Credit: the number of bytes that the host may have in flight (`PROTOCOL.md`, section 9).
 
-/// Counts the bytes that the host sends, and checks whether they are within its credit.
+/// Counts the bytes sent by the host, and checks whether they are within its credit.
 ///
-/// All counts are modulo 2^32 and start anew with a hello. Bytes beyond the credit are not counted: the host treats
-/// them as lost on the line, and the next answer corrects its count.
+/// All counts are modulo 2^32 and restart with a hello. Bytes beyond the credit are not counted: the host treats them
+/// as lost on the line, and the next answer corrects its count.
 pub(crate) struct Credit {
     window: u32,
-    /// Bytes received within the credit: the count that is reported to the host.
+    /// Bytes received within the credit: the count reported to the host.
     received: u32,
     /// The count in the newest report that was queued.
     reported: u32,
@@ -42,8 +42,8 @@ impl Credit {
         self.reported = self.received;
     }
 
-    /// Records that bytes were sent: every queued report may now be on its way to the host. This grants at most as much
-    /// too much as the transmit queue holds; while nothing is sent, no credit is granted.
+    /// Records that bytes were sent, so that every queued report may be on its way to the host. The excess credit is at
+    /// most the size of the transmit queue; while nothing is sent, no credit is granted.
     pub(crate) fn grant_reported(&mut self) {
         self.granted_from = self.reported;
     }

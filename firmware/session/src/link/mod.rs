@@ -1,9 +1,8 @@
-//! The link: what the host may send and what waits to be sent to it.
+//! The link: the host's credit, waiting requests, and the transmit queue.
 //!
-//! Takes the bytes that arrive, to count them against the host's credit; requests that must wait for a commit; and
-//! answers, progress, telemetry and changes of state to send. Gives bytes for the serial line, and the waiting requests
-//! in the order of their arrival. It knows no scene, no finger and no order; the state that an answer contains is
-//! passed to it.
+//! Takes received bytes, to count them against the host's credit; requests that must wait for a commit; and answers,
+//! progress, telemetry and changes of state to send. Returns bytes for the serial line, and waiting requests in the
+//! order of arrival. It is independent of scenes, fingers and orders; the state in an answer is passed to it.
 
 mod credit;
 mod transmit_queue;
@@ -19,24 +18,24 @@ use heapless::Deque;
 use credit::Credit;
 use transmit_queue::TransmitQueue;
 
-/// Requests that may wait for a commit to end; further ones are refused as busy. A host that waits for its answers has
-/// one at most.
+/// Largest number of requests that may wait for a commit; further ones are refused as busy. A host that waits for its
+/// answers has at most one.
 const WAITING_MAX: usize = 8;
 
 /// Credit, waiting requests and transmit queue.
 pub(crate) struct Link {
     credit: Credit,
     queue: TransmitQueue,
-    /// Requests that arrived during the commit and must be carried out after it.
+    /// Requests that arrived during a commit and must be executed after it.
     waiting: Deque<Request, WAITING_MAX>,
     /// Sequence number of the last request of a commit.
     commit_sequence: u16,
     /// Zero without telemetry.
     telemetry_period_ticks: u32,
     telemetry_sent_at_tick: u32,
-    /// A byte of the frame that is being received was beyond the host's credit.
+    /// Whether a byte of the current frame was beyond the host's credit.
     beyond_credit: bool,
-    /// Frames that were discarded because they were beyond the host's credit, modulo 2^32.
+    /// Frames discarded for exceeding the host's credit, modulo 2^32.
     frames_discarded: u32,
 }
 
@@ -54,7 +53,7 @@ impl Link {
         }
     }
 
-    /// Counts bytes of one frame, up to its end at most. Returns whether a byte of that frame was beyond the credit.
+    /// Counts bytes of one frame, at most up to its end. Returns whether a byte of that frame was beyond the credit.
     pub(crate) fn count(&mut self, piece: &[u8]) -> bool {
         self.beyond_credit |= !self.credit.take(piece.len());
         let beyond_credit = self.beyond_credit;
@@ -64,7 +63,7 @@ impl Link {
         beyond_credit
     }
 
-    /// Counts a frame that was discarded because it was beyond the credit.
+    /// Counts a frame discarded for exceeding the credit.
     pub(crate) fn count_discarded(&mut self) {
         self.frames_discarded = self.frames_discarded.wrapping_add(1);
     }
@@ -73,15 +72,15 @@ impl Link {
         self.frames_discarded
     }
 
-    /// Begins a session with a new client: full credit, no telemetry, and nothing waits. Answers to requests that
-    /// waited are not sent: the client that would have been answered is gone.
+    /// Begins a session with a new client: full credit, no telemetry, and no waiting requests. Waiting requests are not
+    /// answered, since their client is gone.
     pub(crate) fn restart(&mut self) {
         self.credit.restart();
         self.telemetry_period_ticks = 0;
         self.waiting.clear();
     }
 
-    /// Replaces all frames that wait to be sent by a hello.
+    /// Replaces all unsent frames by a hello.
     pub(crate) fn send_hello(&mut self, hello: &Hello) {
         self.queue.send_hello(hello);
     }
@@ -103,7 +102,7 @@ impl Link {
         self.waiting.iter().any(|waiting| matches!(waiting.command, Command::StartStream { .. }))
     }
 
-    /// The request that has waited longest.
+    /// The oldest waiting request.
     pub(crate) fn next_waiting(&mut self) -> Option<Request> {
         self.waiting.pop_front()
     }
@@ -141,7 +140,7 @@ impl Link {
         }
     }
 
-    /// Reports the progress of a stream: the index after the last sample received, and the room for further ones.
+    /// Reports the progress of a stream: the index after the last received sample, and the room for further ones.
     /// Returns whether the transmit queue had room.
     pub(crate) fn report_stream(&mut self, (next_index, room): (u32, u16), status: &Status) -> bool {
         let progress = FromBoard::StreamProgress {
@@ -158,7 +157,7 @@ impl Link {
         is_sent
     }
 
-    /// Reports a state that the host did not request.
+    /// Reports an unrequested change of state.
     pub(crate) fn report_state(&mut self, state: State, fault: Option<Fault>, flags: Flags) {
         self.queue.send(&FromBoard::StateChanged { state, fault, flags });
     }

@@ -6,24 +6,25 @@ use frixel_wire::message::FromBoard;
 use frixel_wire::payload;
 use heapless::Deque;
 
-/// Answers that may be outstanding (`PROTOCOL.md`, section 5). A host waits for its answers, so usually one or two are.
+/// Largest number of outstanding answers (`PROTOCOL.md`, section 5). A host waits for its answers, so usually there are
+/// one or two.
 const ANSWERS_MAX: usize = 64;
-/// Length of the longest frame of an answer: the refusal of a scene that is too costly, with a sequence number and a
-/// count of the longest form. A piece of a fault's text, 52 bytes, and tick times, 79 bytes, take the room of two and
-/// of three answers.
+/// Length of the longest frame of an answer: the refusal of a scene that is too costly, with the longest forms of
+/// sequence number and count. A piece of a fault's text (52 bytes) takes the room of two answers, and tick times (79
+/// bytes) that of three.
 const ANSWER_MAX_LEN: usize = 37;
-/// Unsolicited frames are dropped while more than this is queued, 2.5 ms of a line of 2 Mbaud. They thus leave room for
-/// all answers, and those that are sent are recent.
+/// Unsolicited frames are dropped while more than this is queued, 2.5 ms of a line of 2 Mbaud. This leaves room for all
+/// answers, and keeps unsolicited frames recent.
 const UNSOLICITED_MAX_LEN: usize = 512;
 /// Bytes of the queue: room for all answers and unsolicited frames, and for reports of progress and state.
 const QUEUE_LEN: usize = 3072;
 
 const _: () = assert!(ANSWERS_MAX * ANSWER_MAX_LEN + UNSOLICITED_MAX_LEN + FRAME_MAX_LEN <= QUEUE_LEN);
 
-/// A queue of whole frames; the first may have been sent in part.
+/// A queue of whole frames, of which the first may be partly sent.
 pub(crate) struct TransmitQueue {
     bytes: Deque<u8, QUEUE_LEN>,
-    /// The last byte sent did not end a frame.
+    /// Whether the last sent byte did not end a frame.
     is_inside_frame: bool,
 }
 
@@ -32,7 +33,7 @@ impl TransmitQueue {
         Self { bytes: Deque::new(), is_inside_frame: false }
     }
 
-    /// Queues a message, and returns whether there was room. A message that does not fit is dropped whole; the host
+    /// Queues a message, and returns whether there was room. A message that does not fit is dropped entirely; the host
     /// repeats its request after a timeout.
     pub(crate) fn send(&mut self, message: &FromBoard) -> bool {
         self.send_within(QUEUE_LEN, message)
@@ -44,7 +45,7 @@ impl TransmitQueue {
     }
 
     /// Queues a message if at most `len_max` bytes are then queued.
-    // Not inlined, because it has many callers.
+    // Not inlined, since it has many callers.
     #[inline(never)]
     fn send_within(&mut self, len_max: usize, message: &FromBoard) -> bool {
         let mut frame = [0; FRAME_MAX_LEN];
@@ -52,7 +53,7 @@ impl TransmitQueue {
             .is_ok_and(|frame| self.bytes.len() + frame.len() <= len_max && self.push(frame))
     }
 
-    /// Replaces all waiting frames by a hello: they were meant for the previous client.
+    /// Replaces all waiting frames, which were for the previous client, by a hello.
     pub(crate) fn send_hello(&mut self, hello: &Hello) {
         self.keep_begun_frame();
         let mut frame = [0; FRAME_MAX_LEN];
@@ -61,7 +62,7 @@ impl TransmitQueue {
         }
     }
 
-    /// Drops all frames except the rest of one that has been sent in part.
+    /// Drops all frames except the rest of a partly sent one.
     fn keep_begun_frame(&mut self) {
         let rest = self.bytes.iter().position(|byte| *byte == 0).map_or(0, |end| end + 1);
         let kept = if self.is_inside_frame { rest } else { 0 };

@@ -1,42 +1,42 @@
-//! Estimates where the finger is now from touch samples that are late, rare and noisy.
+//! Estimates the current place of the finger from late, infrequent and noisy touch samples.
 //!
 //! A Kalman filter of place, velocity and acceleration along each axis. The acceleration is random and decays with a
 //! time constant (R. A. Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970, 473). Both axes share
-//! the covariance. It grows with the time between samples, so after a lost sample the filter trusts the next one more;
-//! a filter with constant gains does not (`docs/touch.md` compares both).
+//! the covariance. It grows with the time between samples, so that after a lost sample, the filter gives the next one
+//! more weight; a filter with constant gains does not (`docs/touch.md` compares both).
 
-/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1 the error on human strokes changes by a
+/// Time constant of the finger's acceleration, in s. From 0.03 to 0.1, the error on human strokes changes by only a
 /// twentieth.
 const ACCELERATION_S: f32 = 0.04;
 /// Standard deviation of the acceleration of a finger at rest, in m/s^2.
 const ACCELERATION_M_PER_S2: f32 = 0.3;
-/// Standard deviation of the acceleration per m/s of recent speed, added to that of a finger at rest, in 1/s: a finger
-/// that moves fast also turns fast. On strokes with the accelerations of recorded ones after smoothing, the error is
-/// least at 4 to 8, on those before smoothing at 12 to 20 (`docs/touch.md`).
+/// Standard deviation of the acceleration per m/s of recent speed, in 1/s, added to that of a finger at rest, since a
+/// fast finger also turns fast. On strokes with the acceleration of smoothed recordings, the error is smallest at 4 to
+/// 8; with that of unsmoothed ones, at 12 to 20 (`docs/touch.md`).
 const ACCELERATION_PER_SPEED_PER_S: f32 = 8.0;
 /// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;
-/// Standard deviation of a measured place, in m: between the 0.02 mm of an infrared frame and the steps of 0.18 mm of a
-/// screen's pixels (0.18 mm over the root of 12).
+/// Standard deviation of a measured place, in m: between the 0.02 mm of an infrared frame and the quantisation of a
+/// screen with pixels of 0.18 mm (0.18 mm over the root of 12).
 const MEASURED_M: f32 = 0.05e-3;
 /// Standard deviation of the time of a sample, in intervals between reports.
 const JITTER_INTERVALS: f32 = 0.04;
-/// Standard deviation of the velocity of a finger that has just touched, in m/s.
+/// Standard deviation of the velocity of a finger at touch-down, in m/s.
 const FIRST_VELOCITY_M_PER_S: f32 = 0.3;
-/// A sample further than this from the expected place, in m, restarts the filter: it belongs to another touch.
+/// Distance from the expected place, in m, beyond which a sample belongs to another touch and restarts the filter.
 const JUMP_M: f32 = 5e-3;
-/// Longest step in [`ACCELERATION_S`] that the transition is computed for. A track ends before.
+/// Longest step for which the transition is computed, in units of [`ACCELERATION_S`]. A track ends before.
 const STEP_MAX: f32 = 3.0;
 
-/// How place, velocity and acceleration follow from those a time before: Singer's transition.
+/// Singer's transition of place, velocity and acceleration over a time.
 #[derive(Clone, Copy, Debug)]
 struct Transition {
     time_s: f32,
-    /// Part of the acceleration that remains.
+    /// Fraction of the acceleration that remains.
     remainder: f32,
-    /// Velocity over the acceleration before, in s.
+    /// Velocity per initial acceleration, in s.
     velocity_s: f32,
-    /// Place over the acceleration before, in s^2.
+    /// Place per initial acceleration, in s^2.
     place_s2: f32,
 }
 
@@ -45,7 +45,8 @@ impl Transition {
     fn over(time_s: f32) -> Self {
         let x = time_s * (1.0 / ACCELERATION_S);
         let x = if x < STEP_MAX { x } else { STEP_MAX };
-        // Quotients for (1 - e^-x) / x and (x - 1 + e^-x) / x^2 that do not cancel; their errors are below 4 % up to 3.
+        // Quotients for (1 - e^-x) / x and (x - 1 + e^-x) / x^2 without cancellation; their errors are below 4 % up to
+        // 3.
         let velocity = 1.0 / (1.0 + x * (0.5 + x * (1.0 / 12.0)));
         let place = 1.0 / (2.0 + x * (2.0 / 3.0 + x * (1.0 / 18.0)));
         Self { time_s, remainder: 1.0 - x * velocity, velocity_s: time_s * velocity, place_s2: time_s * time_s * place }
@@ -71,7 +72,7 @@ impl Axis {
         }
     }
 
-    /// Takes a measured position. Gains are in 1, 1/s and 1/s^2.
+    /// Corrects the state by a measured position. Gains are in 1, 1/s and 1/s^2.
     fn correct(&mut self, measured: f32, [position, velocity, acceleration]: [f32; 3]) {
         let residual = measured - self.position;
         self.position += position * residual;
@@ -105,7 +106,7 @@ impl Covariance {
         let Self { pp, pv, pa, vv, va, aa } = *self;
         let pa_before_decay = pa + t * va + b * aa;
         let va_before_decay = va + c * aa;
-        // Process noise: the variance that the acceleration gains in a step, spread evenly over the step.
+        // Process noise: the variance added to the acceleration in a step, spread evenly over the step.
         let (t2, gained) = (t * t, acceleration_variance * (1.0 - a * a));
         *self = Self {
             pp: pp + t * (2.0 * pv + t * vv) + b * (2.0 * (pa + t * va) + b * aa) + gained * t2 * t2 * (1.0 / 20.0),
@@ -117,7 +118,7 @@ impl Covariance {
         };
     }
 
-    /// Takes a measurement of the position with this variance, and returns the gains.
+    /// Includes a measurement of the position with this variance, and returns the gains.
     fn correct(&mut self, measured_variance: f32) -> [f32; 3] {
         let per_variance = 1.0 / (self.pp + measured_variance);
         let gains = [self.pp * per_variance, self.pv * per_variance, self.pa * per_variance];
@@ -146,7 +147,7 @@ pub(crate) struct Estimate {
 pub(crate) struct Estimator {
     axes: [Axis; 2],
     covariance: Covariance,
-    /// Largest speed of late, in m/s.
+    /// Largest recent speed, in m/s.
     recent_m_per_s: f32,
     /// Samples since the first one, or since the finger jumped.
     samples: u32,
@@ -163,13 +164,13 @@ impl Estimator {
         sampled_at_tick: 0,
     };
 
-    /// Forgets the finger: the next position is the first of another.
+    /// Resets the filter: the next position is the first of another finger.
     pub(crate) fn forget(&mut self) {
         self.samples = 0;
     }
 
-    /// Takes a position in m that was measured at a tick. Returns whether it did: a sample that is not newer than the
-    /// last one is ignored.
+    /// Includes a position in m measured at a tick. Returns `false` for a sample that is not newer than the last one,
+    /// which is ignored.
     pub(crate) fn take(&mut self, place_m: [f32; 2], at_tick: u32, tick_period_s: f32, interval_s: f32) -> bool {
         let step_ticks = at_tick.wrapping_sub(self.sampled_at_tick) as i32;
         if self.samples > 0 && step_ticks <= 0 {
@@ -184,7 +185,7 @@ impl Estimator {
         true
     }
 
-    /// Time from the last sample to one that was measured at a tick, in s.
+    /// Time from the last sample to one measured at a tick, in s.
     pub(crate) fn time_to_s(&self, at_tick: u32, tick_period_s: f32) -> f32 {
         at_tick.wrapping_sub(self.sampled_at_tick) as i32 as f32 * tick_period_s
     }
@@ -202,7 +203,7 @@ impl Estimator {
         self.samples > 2
     }
 
-    /// The finger a time after the last sample, in s.
+    /// The finger's state a time after the last sample, in s.
     pub(crate) fn after(&self, time_s: f32) -> Estimate {
         let step = Transition::over(time_s);
         let axes = self.axes.map(|axis| axis.after(&step));
@@ -213,7 +214,7 @@ impl Estimator {
         }
     }
 
-    /// Takes a position that was measured `step_s` after the last one.
+    /// Includes a position measured `step_s` after the last one.
     fn follow(&mut self, place_m: [f32; 2], step_s: f32, interval_s: f32) {
         self.recent_m_per_s *= RECENT_S / (RECENT_S + step_s);
         let acceleration = ACCELERATION_M_PER_S2 + ACCELERATION_PER_SPEED_PER_S * self.recent_m_per_s;
@@ -237,7 +238,7 @@ impl Estimator {
     }
 }
 
-/// Length of a vector, within 8 %: the deviations above are no better known.
+/// Length of a vector, within 8 %; the deviations above are not known better.
 fn about_length([x, y]: [f32; 2]) -> f32 {
     let (x, y) = (x.abs(), y.abs());
     if x > y { x + 0.4 * y } else { y + 0.4 * x }

@@ -1,21 +1,21 @@
-//! Selects the finger to follow if there are several: one electrode can only give the effect for one finger at a time.
+//! Selects the finger to follow if there are several, since one electrode can render the effect for only one finger.
 
 use frixel_layers::Leader;
 use frixel_wire::touch::Touch;
 use heapless::Vec;
 
-/// Largest number of fingers that are tracked. Further fingers are ignored.
+/// Largest number of tracked fingers. Further fingers are ignored.
 const FINGERS_MAX: usize = 10;
 
-/// The fingers that the host has reported, and the pending reports of the one that is followed.
+/// The fingers reported by the host, and the pending reports of the followed one.
 pub(super) struct Fingers {
     /// Numbers of the fingers, in the order of their touch-down.
     down: Vec<u8, FINGERS_MAX>,
     /// The finger that is followed.
     followed: Option<u8>,
-    /// A lift of the followed finger is to be reported.
+    /// Whether a lift of the followed finger is to be reported.
     gone: bool,
-    /// The last position of the followed finger, if it is not reported yet.
+    /// The last position of the followed finger, if it has not been reported yet.
     place: Option<Touch>,
 }
 
@@ -35,7 +35,7 @@ impl Fingers {
         }
     }
 
-    /// Records a lift. The lift of an unknown finger is reported too, because the tracker may still follow it.
+    /// Records a lift. The lift of an unknown finger is also reported, since the tracker may still follow it.
     pub(super) fn lift(&mut self, finger: u8, rule: Leader) {
         self.down.retain(|other| *other != finger);
         if self.down.is_empty() {
@@ -52,8 +52,8 @@ impl Fingers {
         self.down.clear();
     }
 
-    /// The next report. If another finger is to be followed, a lift is reported first, so that the distance between the
-    /// two is not taken for a movement.
+    /// The next report. A change of the followed finger is reported as a lift first, so that their distance is not
+    /// taken for a movement.
     pub(super) fn next(&mut self) -> Option<Touch> {
         if core::mem::take(&mut self.gone) { Some(Touch::Up) } else { self.place.take() }
     }

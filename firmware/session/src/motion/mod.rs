@@ -1,7 +1,7 @@
 //! The finger's motion.
 //!
-//! Takes touch reports, of the board's own source and of the host; gives the finger's tracks and lifts as orders. It
-//! knows no scene, no state and no host: the rule for which of several fingers is followed, and whether the scene
+//! Takes touch reports, of the board's own source and of the host; returns the finger's tracks and lifts as orders. It
+//! is independent of scenes, states and hosts: the rule for selecting one of several fingers, and whether the scene
 //! predicts the place, are passed to it.
 //!
 //! `fingers` selects the host's finger to follow; `tracker` turns reports into tracks, with `estimator` and
@@ -37,7 +37,7 @@ impl Motion {
         Self { fingers: Fingers::new(), tracker: Tracker::new(board) }
     }
 
-    /// Takes a finger's place that the host reports, as of the next tick.
+    /// Processes a finger's place reported by the host, as of the next tick.
     pub(crate) fn touch(
         &mut self,
         finger: u8,
@@ -54,7 +54,7 @@ impl Motion {
         let place = Touch::Down { x_m, y_m, age_ticks: u32::from(age_ticks) };
         // While the friction falls, touch data is stale, but there is still a finger.
         if status.telemetry.flags.contains(Flags::TOUCH_STALE.with(Flags::NO_FINGER)) {
-            // There was no report for a while: drop fingers whose lift was lost.
+            // Without reports for a while, drop fingers whose lift was lost.
             self.fingers.forget();
         }
         self.fingers.touch(finger, place, rule);
@@ -62,7 +62,7 @@ impl Motion {
         Ok(Accepted::Done)
     }
 
-    /// Takes a finger's lift that the host reports.
+    /// Processes a finger's lift reported by the host.
     pub(crate) fn lift(&mut self, finger: u8, rule: Leader, status: &Status) -> Accepted {
         self.fingers.lift(finger, rule);
         self.report_fingers(status);
@@ -82,13 +82,12 @@ impl Motion {
         }
     }
 
-    /// Takes a report of the board's own touch source that arrived at `tick`.
+    /// Processes a report of the board's own touch source that arrived at `tick`.
     pub(crate) fn report(&mut self, touch: Touch, tick: u32) {
         self.tracker.report(touch, tick);
     }
 
-    /// Forgets a track that has ended, and a report that has become too old. Called more often than tick counts wrap
-    /// around.
+    /// Drops an ended track, and an outdated report. Called more often than tick counts wrap around.
     pub(crate) fn expire(&mut self, now_tick: u32) {
         self.tracker.expire(now_tick);
     }

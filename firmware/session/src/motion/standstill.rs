@@ -1,20 +1,20 @@
-//! Standstill detector. A still finger feels almost nothing while its current rises, so the tracker ramps the friction
-//! down at standstill, and up again when the finger moves.
+//! Standstill detector. Friction on a resting finger is nearly imperceptible although its current rises, so the tracker
+//! ramps the friction down at standstill, and up again when the finger moves.
 //!
-//! The detector takes distances, not the estimated speed: at 100 reports a second, 0.02 mm of noise make several mm/s
-//! of speed, but the finger stays where it is.
+//! The detector uses distances instead of the estimated speed: at 100 reports per second, 0.02 mm of noise amount to
+//! several mm/s of speed, although the finger rests.
 
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;
 
-/// A finger that moves by less than [`SLOW_WITHIN_M`] in this time, 1.2 mm/s on average, counts as still.
+/// Time, in s, in which a finger that moves by less than [`SLOW_WITHIN_M`], 1.2 mm/s on average, counts as still.
 const STILL_AFTER_S: f32 = 50e-3;
-/// See [`STILL_AFTER_S`]. A larger value would ramp down under fingers that creep, a smaller one would drive a finger
-/// at rest more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time; docs/touch.md has
-/// it.
+/// See [`STILL_AFTER_S`]. A larger value would ramp down under creeping fingers, a smaller one would drive a resting
+/// finger for more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time; docs/touch.md
+/// states it.
 const SLOW_WITHIN_M: f32 = 0.06e-3;
-/// A still finger that moves by more than this in [`MOVING_WITHIN_S`], 2 mm/s on average, counts as moving. It is more
-/// than a step of 0.18 mm, as screens report it, along one side.
+/// Distance, in m, by which a still finger must move within [`MOVING_WITHIN_S`], 2 mm/s on average, to count as moving.
+/// It is more than a step of 0.18 mm along one side, as reported by screens.
 const MOVING_BEYOND_M: f32 = 0.2e-3;
 /// See [`MOVING_BEYOND_M`].
 const MOVING_WITHIN_S: f32 = 100e-3;
@@ -40,7 +40,7 @@ impl StandstillTiming {
     }
 }
 
-/// Where a finger was, and when.
+/// A place of the finger with its time.
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
     place_m: [f32; 2],
@@ -57,18 +57,18 @@ impl Anchor {
 
 /// Detects that the finger stands still, from its place at each touch report.
 ///
-/// The ramp down is scheduled while the finger stays near its anchor, and begins in the future. A report from further
-/// away cancels it.
+/// The ramp down is scheduled in the future while the finger stays near its anchor. A report from farther away cancels
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Standstill {
     ramp: StandstillRamp,
-    /// Where the finger was when it last counted as moving, or, while it is still, at most [`MOVING_WITHIN_S`] and one
+    /// Place of the finger when it last counted as moving or, while it is still, at most [`MOVING_WITHIN_S`] and one
     /// report ago; `None` before the first report.
     anchor: Option<Anchor>,
 }
 
 impl Standstill {
-    /// Initial state: a finger that has just touched the screen counts as moving.
+    /// Initial state: a finger counts as moving after touch-down.
     pub(crate) const MOVING: Self = Self { ramp: StandstillRamp::MOVING, anchor: None };
 
     /// Takes the place at a tick, in m, and returns the ramp from then on.

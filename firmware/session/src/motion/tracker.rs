@@ -1,8 +1,8 @@
 //! Turns touch reports into tracks.
 //!
-//! Reports are late, rare and noisy, but the tick needs a position at any time. The tracker makes an immutable
+//! Reports are late, infrequent and noisy, but the tick needs a position at any time. The tracker makes an immutable
 //! [`Track`] from each report with new data. Tracks and lifts become orders, one after the other. The tracker reads no
-//! clock: it gets tick counts.
+//! clock: it receives tick counts.
 
 use frixel_layers::range::LENGTH_MAX_M;
 
@@ -11,15 +11,15 @@ use super::standstill::{Standstill, StandstillTiming};
 use frixel_control::{Board, Order, Track, is_past, stale_after_ticks};
 use frixel_wire::touch::Touch;
 
-/// Samples older than this are ignored, in s.
+/// Age in s above which samples are ignored.
 const SAMPLE_AGE_MAX_S: f32 = 0.1;
-/// Time in which a new track approaches the estimate, in intervals between reports. The track is one parabola, which
-/// moves away from the estimate again once it has reached it. So that time is longer than one interval: the next track
-/// then starts before this one turns, even when its report is late.
+/// Time in which a new track approaches the estimate, in intervals between reports. A track is a single parabola, which
+/// moves away from the estimate after reaching it. The time is longer than one interval, so that the next track starts
+/// before this one turns, even if its report is late.
 const BLEND_INTERVALS: f32 = 1.5;
-/// Two samples closer than this, in intervals between reports, were bunched.
+/// Distance of two samples, in intervals between reports, below which they were bunched.
 const BUNCHED_INTERVALS: f32 = 0.25;
-/// Part of an interval between two reports that goes into their mean.
+/// Weight of an interval between two reports in their mean.
 const INTERVAL_SHARE: f32 = 0.125;
 
 /// Constants of the board's touch source, computed once.
@@ -36,7 +36,7 @@ struct Timing {
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     place_m: [f32; 2],
-    /// Tick at which the finger was there.
+    /// Tick at which the finger was at this place.
     at_tick: u32,
     /// Tick at which its report arrived.
     reported_at_tick: u32,
@@ -45,10 +45,10 @@ struct Sample {
 /// Turns touch reports into tracks.
 ///
 /// Reports wait until [`Self::next_order`] takes them. A newer position replaces a waiting one, but never a waiting
-/// lift: the lift and the touch-down after it are two orders.
+/// lift: the lift and the following touch-down are two orders.
 pub struct Tracker {
     timing: Timing,
-    /// A lift waits for [`Self::next_order`].
+    /// Whether a lift waits for [`Self::next_order`].
     lift: bool,
     /// A position that waits for [`Self::next_order`], after the lift.
     sample: Option<Sample>,
@@ -59,14 +59,14 @@ pub struct Tracker {
     /// The estimator before the last sample.
     estimator_before: Estimator,
     standstill: Standstill,
-    /// Number of the contact that the last track belongs to.
+    /// Number of the last track's contact.
     contact: u32,
     /// The last track; `None` without a finger.
     track: Option<Track>,
-    /// When the last report was taken.
+    /// Time at which the last report was taken.
     reported_at_tick: u32,
-    /// Mean time between reports, at most the board's report period, in s. It is kept from touch to touch, because the
-    /// source stays the same.
+    /// Mean time between reports, at most the board's report period, in s. It is kept between touches, since the source
+    /// stays the same.
     interval_s: f32,
 }
 
@@ -115,7 +115,7 @@ impl Tracker {
         }
     }
 
-    /// Drops a finger whose last track has ended: the next report begins another contact. Must be called at least once
+    /// Drops a finger whose last track has ended; the next report begins another contact. Must be called at least once
     /// before the tick counter wraps.
     pub fn expire(&mut self, now_tick: u32) {
         if self.track.is_some_and(|track| is_past(track.until_tick, now_tick)) {
@@ -123,9 +123,9 @@ impl Tracker {
         }
     }
 
-    /// The next order that results from the reports so far: a lift or a track. The track is led to where the finger is
-    /// now if the scene `predicts`, and stays where the finger was measured otherwise.
-    // Not inlined into the main loop, whose stack would then hold its values all the time.
+    /// The next order resulting from the reports: a lift or a track. If the scene `predicts`, the track leads to the
+    /// finger's current place; otherwise it stays at the measured one.
+    // Not inlined into the main loop, whose stack would otherwise hold its values permanently.
     #[inline(never)]
     pub fn next_order<'a>(&mut self, predicts: bool) -> Option<Order<'a>> {
         if core::mem::take(&mut self.lift) {
@@ -146,7 +146,7 @@ impl Tracker {
             self.standstill = Standstill::MOVING;
         } else {
             self.measure_interval(reported_at_tick);
-            // The last report had waited for this one, so its place is older than it said: take it back.
+            // The last report was delayed until this one, so its place is older than stated: revert it.
             if self.estimator.time_to_s(at_tick, timing.tick_period_s) < BUNCHED_INTERVALS * self.interval_s {
                 self.estimator = self.estimator_before;
             }
@@ -167,8 +167,8 @@ impl Tracker {
             .map(|track| track.place_m(track.elapsed_s(reported_at_tick, timing.tick_period_s)));
         let path = Path::from(before_m, &estimate, BLEND_INTERVALS * self.interval_s);
         let ticks = timing.stale_after_ticks.min(timing.sample_age_max_ticks - age_ticks) + 1;
-        // The estimate at the sample, not now: prediction adds noise. The time is that of the report, on which the ramp
-        // depends.
+        // The estimate at the sample instead of now, since prediction adds noise. The time is the report's, on which
+        // the ramp depends.
         let ramp = self.standstill.take(self.estimator.after(0.0).place_m, reported_at_tick, &timing.standstill);
         let track = Track {
             contact: self.contact,
@@ -185,7 +185,7 @@ impl Tracker {
         Some(track)
     }
 
-    /// Takes the time between two reports into its mean. After a lost report the time counts as one period.
+    /// Includes the time between two reports in their mean. After a lost report, the time counts as one period.
     fn measure_interval(&mut self, reported_at_tick: u32) {
         let interval_s = reported_at_tick.wrapping_sub(self.reported_at_tick) as f32 * self.timing.tick_period_s;
         let period_s = self.timing.report_period_s;
@@ -202,11 +202,11 @@ struct Path {
 }
 
 impl Path {
-    /// The path from the place `before_m` of the track before to that of an estimate, and along it.
+    /// The path from the previous track's place `before_m` to that of an estimate, and along it.
     ///
-    /// The difference `d` is removed as `d (1 - t/T)^2` over the time `T`, which a parabola can do: the place does not
-    /// jump, nor does its rate at the end of that time. A step of the place at every report would be felt as a buzz at
-    /// the rate of the reports.
+    /// The difference `d` is removed as `d (1 - t/T)^2` over the time `T`, which a parabola can represent: neither the
+    /// place nor, at the end of that time, its rate jumps. A step of the place at every report would be perceived as a
+    /// buzz at the report rate.
     fn from(before_m: Option<[f32; 2]>, estimate: &Estimate, blend_s: f32) -> Self {
         let Estimate { place_m, velocity_m_per_s, half_acceleration_m_per_s2 } = *estimate;
         let mut path = Self { place_m, velocity_m_per_s, half_acceleration_m_per_s2 };

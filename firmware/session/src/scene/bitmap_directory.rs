@@ -4,7 +4,7 @@ use frixel_layers::{BitmapPool, StoredBitmap};
 use frixel_wire::scene::RECORDS_MAX;
 use heapless::Vec;
 
-/// Most bitmaps in the pool at a time: those of the scene that plays, and those of the next.
+/// Largest number of bitmaps in the pool: those of the playing scene, and those of the next.
 const ENTRIES_MAX: usize = if cfg!(feature = "bitmap") { 2 * RECORDS_MAX } else { 0 };
 
 /// The bitmaps in the pool, in order of their offsets.
@@ -23,7 +23,7 @@ impl Directory {
         self.entries.retain(keep);
     }
 
-    /// Moves all bitmaps together, so that the free memory is one gap. The ticker must not be reading any of them.
+    /// Compacts all bitmaps, so that the free memory is one gap. The ticker must not be reading any of them.
     pub(crate) fn compact(&mut self, pool: &BitmapPool) {
         let mut next = 0;
         for bitmap in &mut self.entries {
@@ -33,7 +33,7 @@ impl Directory {
         }
     }
 
-    /// Allocates a bitmap in the first gap that is large enough. If there is none, returns the largest gap in bytes.
+    /// Allocates a bitmap in the first sufficient gap. If there is none, returns the size of the largest gap in bytes.
     pub(crate) fn allocate(&mut self, width: u16, height: u16, crc32: u32, pool_len: u32) -> Result<StoredBitmap, u32> {
         let len = u32::from(width) * u32::from(height);
         let mut gap_start = 0;

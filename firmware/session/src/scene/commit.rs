@@ -1,9 +1,8 @@
 //! Commit: passes the uploaded scene to the ticker.
 //!
-//! A commit takes the time of hundreds of ticks. [`Scenes::step_commit`] advances it by one step of at most a
-//! millisecond (on an RP2040, 8 ms), so that touches, signs of life and stops are served in between. Requests whose
-//! outcome depends on the commit wait until it has ended. A hello drops it: the client that would have been answered is
-//! gone.
+//! A commit takes the time of hundreds of ticks. [`Scenes::step_commit`] advances it by a step of at most a millisecond
+//! (on an RP2040, 8 ms), so that touches, signs of life and stops are served in between. Requests whose outcome depends
+//! on the commit wait until it has ended. A hello drops it, since its client is gone.
 
 use frixel_control::{Board, Order};
 use frixel_layers::{ActiveLayers, Scene, disabled_record};
@@ -16,10 +15,10 @@ use super::upload::Upload;
 use super::{BitmapNames, Committed, Scenes};
 use crate::states::Orders;
 
-/// Records that a step of a commit checks.
+/// Records checked per step of a commit.
 const RECORDS_PER_STEP: usize = 16;
 
-/// A commit under way.
+/// A commit in progress.
 pub(super) struct Commit {
     crc32: u32,
     step: Step,
@@ -27,13 +26,13 @@ pub(super) struct Commit {
 
 /// The next step of a commit.
 enum Step {
-    /// Checks that a complete scene was uploaded, except its records.
+    /// Checks that a complete scene was uploaded, without its records.
     Check,
     /// Checks its records from this one on.
     CheckRecords(usize),
     /// Computes its coefficients.
     Load(Loading),
-    /// Hands them to the ticker.
+    /// Passes them to the ticker.
     HandOver,
 }
 
@@ -43,12 +42,12 @@ impl<'a> Scenes<'a> {
         self.commit = Some(Commit { crc32, step: Step::Check });
     }
 
-    /// Whether a commit is under way.
+    /// Whether a commit is in progress.
     pub(crate) fn is_committing(&self) -> bool {
         self.commit.is_some()
     }
 
-    /// Commits a scene of the board's own at once: one without bitmaps, for bring-up or self-test.
+    /// Commits one of the board's own scenes at once: without bitmaps, for bring-up or self-test.
     pub(crate) fn commit_own(&mut self, scene: &[u8], board: &Board, orders: &mut Orders<'a>) -> Result<(), Refusal> {
         self.drop_unfinished();
         let crc32 = crc32(scene);
@@ -63,7 +62,7 @@ impl<'a> Scenes<'a> {
         }
     }
 
-    /// Does the next step of the commit under way. Returns its outcome after the last.
+    /// Does the next step of the current commit. Returns its outcome after the last step.
     pub(crate) fn step_commit(&mut self, board: &Board, orders: &mut Orders<'a>) -> Option<Result<(), Refusal>> {
         let mut commit = self.commit.take()?;
         match self.step(&mut commit, board, orders) {
@@ -143,7 +142,7 @@ impl<'a> Scenes<'a> {
         let spare = self.spare.take().ok_or(Refusal::Busy)?;
         self.committed = committed;
         if !self.committed.has_stream {
-            // No order: the ticker ends the stream when it takes the scene.
+            // No order needed: the ticker ends the stream when it takes the scene.
             let _ = self.stream.end();
         }
         self.announced_bitmaps.clear();

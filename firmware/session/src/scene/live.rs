@@ -1,4 +1,4 @@
-//! Changes of a scene while it plays: layers on or off, their gains, and the beginning and end of a stream.
+//! Changes of a scene during a play: layers on or off, their gains, and the start and end of a stream.
 
 use frixel_control::{Board, Order};
 use frixel_layers::{range, within};
@@ -53,7 +53,7 @@ impl<'a> Scenes<'a> {
         Ok(Accepted::Done)
     }
 
-    /// Takes no more samples, and lets the ticker play those that have arrived.
+    /// Stops taking samples, and lets the ticker play those that have arrived.
     pub(crate) fn end_stream(&mut self, orders: &mut Orders<'a>) -> Result<Accepted, Refusal> {
         if !self.stream.is_attached() {
             return Err(Refusal::UnknownCommand);

@@ -1,4 +1,4 @@
-//! Checks a scene's configuration and computes the coefficients that the tick reads, in steps.
+//! Checks a scene's configuration and computes the tick's coefficients, in steps.
 
 use frixel_control::{Active, Board, CarrierTiming};
 use frixel_layers::cost::{LayerCosts, Worst};
@@ -11,11 +11,11 @@ use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use super::bitmap_directory::Directory;
 
-/// Cells of the grid whose cost a step of loading finds.
+/// Grid cells whose cost is computed per step of loading.
 const CELLS_PER_STEP: usize = 64;
-/// Rows of the inverse table that a step of loading computes.
+/// Rows of the inverse table computed per step of loading.
 const ROWS_PER_STEP: usize = 3;
-/// The same of an empirical law.
+/// Rows of an empirical law's table computed per step of loading.
 const LAW_ROWS_PER_STEP: usize = 2;
 
 /// The next step of loading a scene.
@@ -47,8 +47,8 @@ pub(crate) enum Loading {
 }
 
 impl Loading {
-    /// Does the next step of computing the coefficients of `scene` into `active`. A step takes a board well below a
-    /// millisecond (on an RP2040, 8 ms). Returns whether it was the last. If the scene is refused, `active` holds no
+    /// Does the next step of computing the coefficients of `scene` into `active`, in well below a millisecond on a
+    /// board (on an RP2040, 8 ms). Returns whether it was the last step. If the scene is refused, `active` holds no
     /// scene; before the last step, its content must not be used.
     pub(crate) fn step(
         &mut self,
@@ -139,12 +139,12 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     Ok(())
 }
 
-/// The carrier of a scene, and the largest rms voltage that it carries within all limits.
+/// The carrier of a scene, and its largest rms voltage within all limits.
 fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
     let limits = &board.limits;
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let carrier = Carrier {
-        // The branch that is never taken lets the compiler leave the sine out of a small image.
+        // The branch that is never taken lets the compiler omit the sine in a small image.
         waveform: match header.waveform {
             Waveform::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
             _ => Waveform::Square,
@@ -159,7 +159,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let drive_v_peak = voltage_max_v_rms * peak_per_rms;
     let current = carrier.electrode_current(limits.electrode_capacitance_max_f, drive_v_peak);
     let ceilings = board.ceilings();
-    // The carrier bounds its volt-seconds by the peak of the header, not by what the scene drives.
+    // The carrier bounds its volt-seconds by the peak of the header, not by the scene's largest voltage.
     let bound_v_peak = ceilings.voltage_max_v_peak(half_period_ticks);
     for (field, found, max) in [
         (ConfigField::CurrentRms, current.a_rms, limits.current_max_a_rms),
@@ -175,12 +175,12 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     Ok((timing, voltage_max_v_rms))
 }
 
-/// The largest rms voltage that a board gives for a header: within its rms limit, and within its peak limit for the
-/// peaks of its carrier.
+/// The largest rms voltage of a board for a header, within its rms limit, and within its peak limit at the peaks of its
+/// carrier.
 ///
 /// # Errors
 ///
-/// The refusal of a carrier whose current is too large.
+/// A carrier whose current is too large is refused.
 pub fn voltage_max_v_rms(header: &Header, board: &Board) -> Result<f32, Refusal> {
     carrier(header, board).map(|(_, voltage_max_v_rms)| voltage_max_v_rms).map_err(Refusal::Config)
 }
@@ -188,9 +188,9 @@ pub fn voltage_max_v_rms(header: &Header, board: &Board) -> Result<f32, Refusal>
 /// Number of rows of a scene's inverse table that hold a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableRows {
-    /// Rows that the board computes.
+    /// Rows computed by the board.
     pub filled: usize,
-    /// Rows that the board would compute if the scene used the largest friction that the drive can give.
+    /// Rows that the board would compute if the scene used the largest reachable friction.
     pub whole: usize,
 }
 
@@ -212,7 +212,7 @@ fn begin_law_table(
     InverseTable::begin_law(law.exponent(), law.points(), voltage_max_v_rms, max_n).map_err(|error| no_law(&error, law))
 }
 
-/// The number that is no law's, and the range that it is outside of.
+/// The invalid number of a law, and its valid range.
 fn no_law(error: &LawError, law: &FingerLaw) -> ConfigRefusal {
     let (field, found, [min, max]) = match *error {
         LawError::Exponent { found } | LawError::Slope { found, .. } => {
@@ -226,7 +226,7 @@ fn no_law(error: &LawError, law: &FingerLaw) -> ConfigRefusal {
     ConfigRefusal { field, found, min, max, layer: ConfigRefusal::WHOLE_SCENE }
 }
 
-/// What does not rise up to a point: its voltage, or else its friction.
+/// The quantity that does not ascend at a point: its voltage, or otherwise its friction.
 fn no_point(law: &FingerLaw, number: usize) -> (ConfigField, f32, [f32; 2]) {
     let point = |number: usize| {
         law.points()
@@ -261,13 +261,13 @@ fn finger(header: &Header) -> Finger<f32> {
     }
 }
 
-/// Bytes of an [`Active`] that a scene fills, for each of the two: its layers, points, waves and clicks. The rest
-/// is the same for every scene. No pointer is among them, so that they are as many on every target.
+/// Bytes of an [`Active`] filled by a scene, for each of the two: its layers, points, waves and clicks. The rest is the
+/// same for every scene. They contain no pointer, so their number is the same on every target.
 pub fn active_bytes_filled(scene: &Scene) -> usize {
     scene.records().map(|record| active_bytes(&record)).sum::<usize>() + scene.points().len() * size_of::<Point>()
 }
 
-/// How many rows of the inverse table a board computes for a valid scene. The table takes the same RAM for every scene;
+/// Number of inverse-table rows that a board computes for a valid scene. The table takes the same RAM for every scene;
 /// omitted rows save time at a commit.
 pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
     let header = scene.header();

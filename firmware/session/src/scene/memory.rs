@@ -68,8 +68,8 @@ impl<'a> Scenes<'a> {
         Ok(Accepted::Done)
     }
 
-    /// Allocates a bitmap: first without removing any, then after removing those that no scene uses, and then, if
-    /// nothing plays, after removing the committed scene and compacting the others.
+    /// Allocates a bitmap: first without removing any, then after removing unused ones, and finally, if nothing plays,
+    /// after removing the committed scene and compacting the others.
     fn make_room(
         &mut self,
         width: u16,
@@ -91,7 +91,7 @@ impl<'a> Scenes<'a> {
         match removal {
             Removal::Allowed => {}
             Removal::Plays => return Err(refused),
-            // The ticker may still read what would be overwritten.
+            // The ticker may still read the memory.
             Removal::Unsettled => return Err(Refusal::Busy),
         }
         if self.committed.crc32 != 0 {
@@ -104,7 +104,7 @@ impl<'a> Scenes<'a> {
         self.directory.allocate(width, height, crc32, pool_len).map_err(|_| refused)
     }
 
-    /// Takes a chunk of the upload under way. Returns the next one to expect, if that is to be reported.
+    /// Takes a chunk of the current upload. Returns the next expected chunk if it is to be reported.
     pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8]) -> Option<u16> {
         let upload = self.upload.as_mut()?;
         match upload.take(number, bytes, &mut self.staging, self.pool) {

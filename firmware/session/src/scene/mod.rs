@@ -1,11 +1,11 @@
-//! The scenes: the one that is uploaded, the one that a commit prepares, and the one that the ticker has.
+//! The scenes: the uploaded one, the one prepared by a commit, and the ticker's.
 //!
-//! Takes the bytes of scenes, bitmaps and streams, and the changes of a scene while it plays; gives the coefficients of
-//! a scene and what changes it as orders, through the [`Orders`](crate::states::Orders) that are passed to it. It knows
-//! no line, no finger and no state: whether the scene that plays may be removed is passed to it.
+//! Takes the bytes of scenes, bitmaps and streams, and changes during a play; returns a scene's coefficients and its
+//! changes as orders, through the [`Orders`](crate::states::Orders) passed to it. It is independent of lines, fingers
+//! and states: whether the playing scene may be removed is passed to it.
 //!
-//! `upload` collects bytes, `memory` allocates for them and ends uploads, `commit` hands a scene over (`loading`
-//! computes its coefficients step by step), `live` changes layers, and `stream` holds the samples of a stream.
+//! `upload` collects bytes, `memory` allocates for them and ends uploads, `commit` passes on a scene (`loading`
+//! computes its coefficients in steps), `live` changes layers, and `stream` holds the samples of a stream.
 
 mod bitmap_directory;
 mod commit;
@@ -40,7 +40,7 @@ pub(crate) struct Scenes<'a> {
     staging: Staging,
     /// Bitmaps announced since the last commit: those of the next scene.
     announced_bitmaps: BitmapNames,
-    /// Buffer for the coefficients of the next scene; `None` until the ticker has returned that of the previous scene.
+    /// Buffer for the coefficients of the next scene; `None` until the ticker has returned the previous scene's.
     spare: Option<&'a mut Active>,
     /// The commit under way.
     commit: Option<Commit>,
@@ -74,7 +74,7 @@ impl<'a> Scenes<'a> {
         }
     }
 
-    /// Takes back the coefficients that the ticker no longer uses.
+    /// Takes back coefficients that the ticker no longer uses.
     pub(crate) fn take_back(&mut self, spare: &'a mut Active) {
         self.spare = Some(spare);
     }
@@ -89,17 +89,18 @@ impl<'a> Scenes<'a> {
         self.committed.header.as_ref()
     }
 
-    /// Whether the finger's place is predicted; yes without a scene.
+    /// Whether the finger's place is predicted; `true` without a scene.
     pub(crate) fn predicts(&self) -> bool {
         self.header().is_none_or(|header| header.prediction)
     }
 
-    /// The rule for which of several fingers is followed; the earliest one without a scene.
+    /// The rule for selecting one of several fingers; the earliest one without a scene.
     pub(crate) fn leader(&self) -> Leader {
         self.header().map_or(Leader::First, |header| header.leader)
     }
 
-    /// Drops what the previous client has begun: an upload, a commit and announced bitmaps. The committed scene stays.
+    /// Drops unfinished work of the previous client: an upload, a commit and announced bitmaps. The committed scene
+    /// stays.
     pub(crate) fn drop_unfinished(&mut self) {
         self.drop_upload();
         self.commit = None;

@@ -1,4 +1,4 @@
-//! The stream of a firmware without the feature `stream`: there is none, and it takes no space.
+//! Replacement for streams in a firmware without the feature `stream`; takes no space.
 
 use core::marker::PhantomData;
 

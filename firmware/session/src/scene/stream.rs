@@ -1,20 +1,20 @@
-//! The stream that the host sends.
+//! The stream sent by the host.
 
 use frixel_control::{Order, StreamBuffer, StreamIntake};
 
-/// Frames of samples after which the board reports the progress of the stream: less than 1 KiB, as with uploads.
+/// Frames of samples per progress report: less than 1 KiB, as with uploads.
 const PROGRESS_FRAMES: u32 = 4;
-/// Time after which the board reports the progress of the stream in any case, in s.
+/// Longest time between progress reports, in s.
 pub(crate) const PROGRESS_PERIOD_S: f32 = 0.02;
 
-/// Takes the samples of streams, and says when their progress is to be reported.
+/// Takes the samples of streams, and determines when their progress is to be reported.
 pub(crate) struct Stream<'a> {
     /// `None` on a board without a stream buffer.
     intake: Option<StreamIntake<'a>>,
     /// Frames of samples since the last progress report.
     frames: u32,
     reported_at_tick: u32,
-    /// Send a progress report as soon as there is room.
+    /// Whether to send a progress report as soon as there is room.
     report_due: bool,
 }
 
@@ -39,8 +39,8 @@ impl<'a> Stream<'a> {
         Some(Order::StartStream(start))
     }
 
-    /// Takes no more samples, and returns the order that ends the stream after the last; `None` without a stream. The
-    /// order is not needed when the ticker stops the stream itself: when it leaves the Active state, or loads a scene
+    /// Stops taking samples, and returns the order that ends the stream after the last one; `None` without a stream.
+    /// The order is not needed if the ticker stops the stream itself: when it leaves the Active state, or loads a scene
     /// without a stream.
     pub(crate) fn end(&mut self) -> Option<Order<'a>> {
         self.intake.as_mut()?.end().map(|last| Order::EndStream { last })
@@ -54,7 +54,7 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// The progress to report: the index after the last sample received, and the room for further ones; `None` if no
+    /// The progress to report: the index after the last received sample, and the room for further ones; `None` if no
     /// report is due.
     pub(crate) fn progress_due(&self, now_tick: u32, period_ticks: u32) -> Option<(u32, u16)> {
         let progress = self.intake.as_ref()?.progress()?;

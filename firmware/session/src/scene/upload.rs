@@ -1,4 +1,4 @@
-//! Uploads: chunks are collected, and used only once the whole has been checked.
+//! Uploads: chunks are collected, and used only after the whole upload was checked.
 
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::Refusal;
@@ -7,17 +7,17 @@ use frixel_wire::scene::bitmap_digest;
 
 use frixel_layers::{BitmapPool, SCENE_MAX_LEN, StoredBitmap};
 
-/// Chunks after which the board reports the progress of an upload: less than 1 KiB, a quarter of the smallest window.
+/// Chunks per progress report of an upload: less than 1 KiB, a quarter of the smallest window.
 const PROGRESS_CHUNKS: u16 = 5;
 
-/// Where the bytes of an upload go.
+/// Destination of an upload's bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Destination {
     Scene,
     Bitmap(StoredBitmap),
 }
 
-/// An upload under way.
+/// An upload in progress.
 pub(crate) struct Upload {
     pub(crate) destination: Destination,
     len: u32,
@@ -40,7 +40,7 @@ impl Upload {
         Self::new(Destination::Scene, len, crc32, Crc32::new())
     }
 
-    /// An upload of a bitmap. Its CRC-32 covers the bitmap's width and height, too.
+    /// An upload of a bitmap. Its CRC-32 also covers the bitmap's width and height.
     pub(crate) fn of_bitmap(bitmap: StoredBitmap) -> Self {
         let digest = bitmap_digest(bitmap.width, bitmap.height);
         Self::new(Destination::Bitmap(bitmap), bitmap.len(), bitmap.crc32, digest)
@@ -50,7 +50,7 @@ impl Upload {
         Self { destination, len, crc32, received: 0, digest, next_chunk: 0, gap_reported: false }
     }
 
-    /// Takes a chunk. A chunk that was received before is ignored. A chunk that comes too early is dropped, and the
+    /// Takes a chunk. A chunk received before is ignored. A chunk ahead of the expected one is dropped, and the
     /// expected chunk is reported once.
     pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> ChunkReport {
         let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
@@ -91,7 +91,7 @@ impl Upload {
 /// The bytes of a scene that has been or is being uploaded.
 pub(crate) struct Staging {
     bytes: [u8; SCENE_MAX_LEN],
-    /// Length and CRC-32 of a scene that is complete.
+    /// Length and CRC-32 of a complete scene.
     whole: Option<(u32, u32)>,
 }
 

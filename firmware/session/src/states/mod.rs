@@ -1,8 +1,8 @@
-//! The states: Disarmed, Armed, Active, Faulted, as the session asks for them and as the ticker reports them.
+//! The states Disarmed, Armed, Active and Faulted, as requested by the session and reported by the ticker.
 //!
-//! Takes the commands that arm, disarm, play and stop, and the ticker's status; gives refusals, changes of state to
-//! report, and the next order for the ticker. Orders of other parts go through its [`Orders`]. It knows no scene and no
-//! finger: whether there is a scene, and the order that the finger has next, are passed to it.
+//! Takes the commands that arm, disarm, play and stop, and the ticker's status; returns refusals, changes of state to
+//! report, and the next order for the ticker. Orders of other parts go through its [`Orders`]. It is independent of
+//! scenes and fingers: whether there is a scene, and the finger's next order, are passed to it.
 
 mod orders;
 
@@ -15,11 +15,11 @@ pub(crate) use orders::Orders;
 /// The board's state and the orders to the ticker.
 pub(crate) struct States<'a> {
     pub(crate) orders: Orders<'a>,
-    /// State once the ticker has applied every order.
+    /// State after the ticker has applied all orders.
     state: State,
-    /// A valid frame has arrived since the last order that says so.
+    /// Whether a valid frame has arrived since the last order that reports it.
     host_heard: bool,
-    /// An [`Order::HostHeard`] has already waited for one order of the finger.
+    /// Whether an [`Order::HostHeard`] has already waited for one order of the finger.
     sign_of_life_waited: bool,
 }
 
@@ -37,12 +37,12 @@ impl<'a> States<'a> {
         self.host_heard = true;
     }
 
-    /// Whether the ticker has applied every order.
+    /// Whether the ticker has applied all orders.
     pub(crate) fn is_settled(&self, status: &Status) -> bool {
         status.orders_applied == self.orders.sent()
     }
 
-    /// Adopts the ticker's state once the ticker has applied every order. Returns whether the state has changed.
+    /// Adopts the ticker's state after it has applied all orders. Returns whether the state has changed.
     pub(crate) fn follow(&mut self, status: &Status) -> bool {
         let before = self.state;
         if self.is_settled(status) {
@@ -83,7 +83,7 @@ impl<'a> States<'a> {
         self.change(Order::ClearFault, &[State::Faulted], State::Disarmed)
     }
 
-    /// Disarms for a new client: the previous one is gone.
+    /// Disarms for a new client, since the previous one is gone.
     pub(crate) fn disarm_for_new_client(&mut self) {
         // Ignore a refusal: there was nothing to disarm. There is always room for this order.
         let _ = self.change(Order::Disarm, &[State::Armed, State::Active], State::Disarmed);
@@ -98,9 +98,9 @@ impl<'a> States<'a> {
         Ok(Accepted::Done)
     }
 
-    /// The next order. Orders that wait come first: they are few, so they delay a lift by a few ticks only. An
-    /// [`Order::HostHeard`] waits for at most one order of the `finger`: it waits so that pings do not delay tracks,
-    /// and not longer, so that a touch source that reports at every tick does not cause a host timeout.
+    /// The next order. Waiting orders come first: they are few, and delay a lift by only a few ticks. An
+    /// [`Order::HostHeard`] waits for at most one order of the `finger`. It waits so that pings do not delay tracks,
+    /// but no longer, so that a touch source that reports in every tick does not cause a host timeout.
     pub(crate) fn next_order(&mut self, finger: impl FnOnce() -> Option<Order<'a>>) -> Option<Order<'a>> {
         if let Some(order) = self.orders.next() {
             self.host_heard &= !order.is_sign_of_life();

@@ -4,12 +4,12 @@ use frixel_control::Order;
 use frixel_wire::message::Refusal;
 use heapless::Deque;
 
-/// Orders that may wait for the ticker. A command is refused as busy when there is no room.
+/// Largest number of waiting orders. A command is refused as busy if there is no room.
 const ORDERS_MAX: usize = 8;
-/// Number of them that are reserved for Stop and Disarm, so that these are never refused for lack of room.
+/// Places reserved for Stop and Disarm, which are thus never refused for lack of room.
 const ORDERS_RESERVED: usize = 2;
 
-/// The orders that wait for the ticker, other than those of the finger and signs of life.
+/// The waiting orders for the ticker, except orders of the finger and signs of life.
 pub(crate) struct Orders<'a> {
     waiting: Deque<Order<'a>, ORDERS_MAX>,
     /// Orders since power-on, modulo 2^32.

@@ -1,10 +1,9 @@
-//! Stored form of the limits that were measured on a board during bring-up, and their ceilings.
+//! Stored form of the limits measured on a board during bring-up, and their ceilings.
 //!
-//! A person types measured limits in, and nothing on the board can tell a wrong number from a right one. So they are
-//! bounded twice, when they are stored and when they are read back: by [`VOLTAGE_CEILING_V_PEAK`],
-//! [`CURRENT_CEILING_A_RMS`] and [`CURRENT_CEILING_A_PEAK`], and by the series resistance of the build. The ceilings
-//! are those of boards that people touch: a simulated board stores no limits, and has its own. None of this is a
-//! certification.
+//! Measured limits are typed in by a person, and the board cannot detect a wrong number. They are therefore bounded
+//! twice, when stored and when read back: by [`VOLTAGE_CEILING_V_PEAK`], [`CURRENT_CEILING_A_RMS`] and
+//! [`CURRENT_CEILING_A_PEAK`], and by the series resistance of the build. The ceilings apply to boards that people
+//! touch: a simulated board stores no limits, and has its own. None of this is a certification.
 
 use core::fmt;
 
@@ -15,32 +14,33 @@ use super::{Flash, Slot, WORD_LEN};
 /// Bytes of the stored limits: the version, then seven numbers.
 pub const LIMITS_LEN: usize = 4 * WORD_LEN;
 
-/// Largest voltage that is stored, in V peak.
+/// Largest voltage that may be stored, in V peak.
 ///
-/// It is what the parts of `docs/hardware.md` are rated for. What a person bears is another limit, which the series
-/// resistance gives and nobody stores (`frixel_model::TouchBound`).
+/// It is the rating of the parts in `docs/hardware.md`. The limit for a person who touches the electrode is separate:
+/// it follows from the series resistance, and is not stored (`frixel_model::TouchBound`).
 pub const VOLTAGE_CEILING_V_PEAK: f32 = 200.0;
-/// Largest rms current that is stored, in A: what IEC 61010-1, 6.3.1 (unread) allows in normal use.
+/// Largest rms current that may be stored, in A: the limit of IEC 61010-1, 6.3.1 (unread) for normal use.
 ///
-/// The board compares currents without the weighting of IEC 60990, which only makes them smaller: a sine of 1 kHz by a
+/// The board compares currents without the weighting of IEC 60990, which only reduces them: for a sine of 1 kHz by a
 /// factor of 1.7, the margin.
 pub const CURRENT_CEILING_A_RMS: f32 = 0.5e-3;
-/// Largest peak current that is stored, in A: what IEC 61010-1, 6.3.2 (unread) allows in a single-fault condition.
+/// Largest peak current that may be stored, in A: the limit of IEC 61010-1, 6.3.2 (unread) for a single-fault
+/// condition.
 ///
-/// Compared without the weighting of IEC 60990, too. With it, a current of 5 mA that decays within 36 us, as at the
-/// carrier's edges behind 68 kOhm, counts as 0.51 mA, of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
+/// Also compared without the weighting of IEC 60990. With it, a current of 5 mA that decays within 36 us, as at the
+/// carrier's edges with 68 kOhm, counts as 0.51 mA of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
 pub const CURRENT_CEILING_A_PEAK: f32 = 5e-3;
 
-/// Largest deviation of the series resistance for which limits were stored from that of the build, relative.
+/// Largest relative deviation of the stored limits' series resistance from the build's.
 const SERIES_TOLERANCE: f32 = 0.01;
-/// Least and largest edges, as parts of the time constant of the electrode behind the series resistance. Bring-up takes
-/// 0.7 to 1.4 for the capacitor that it measures on, and an amplifier that is as slow as the resistor makes half as
-/// much again.
+/// Smallest and largest edge time, relative to the time constant of the electrode with the series resistance. Bring-up
+/// accepts 0.7 to 1.4 for the capacitor that it measures on, and an amplifier as slow as the resistor adds half as much
+/// again.
 const EDGES_MIN: f32 = 0.7;
 const EDGES_MAX: f32 = 2.1;
-/// Part of a ceiling by which a number may exceed it, because numbers that are typed in mA are rounded.
+/// Relative tolerance of a ceiling, because numbers typed in mA are rounded.
 const ROUNDING: f32 = 1e-6;
-/// Largest voltage that is plausible without ceilings, in V peak: no electrovibration screen takes more.
+/// Largest plausible voltage without ceilings, in V peak: no electrovibration screen withstands more.
 const VOLTAGE_MAX_V_PEAK: f32 = 500.0;
 /// Upper bound of all stored numbers, in any unit.
 const NUMBER_MAX: f32 = 1e9;
@@ -48,14 +48,14 @@ const NUMBER_MAX: f32 = 1e9;
 /// Whether a firmware build bounds the stored limits by the ceilings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CeilingPolicy {
-    /// Limits above a ceiling are refused. What every board is built with unless its maker decides otherwise.
+    /// Limits above a ceiling are refused. The default of every build.
     InForce,
-    /// Limits above the ceilings are stored and used, and the hello says so ([`notice::LIMITS_ABOVE_CEILINGS`]).
+    /// Limits above the ceilings are stored and used, with a notice in the hello ([`notice::LIMITS_ABOVE_CEILINGS`]).
     Lifted,
 }
 
 impl CeilingPolicy {
-    /// Version of the layout. It differs, so that a build takes no limits that a build of the other kind stored.
+    /// Version of the layout, which differs so that a build rejects limits stored by a build of the other kind.
     const fn version(self) -> u32 {
         match self {
             Self::InForce => 1,
@@ -63,7 +63,7 @@ impl CeilingPolicy {
         }
     }
 
-    /// The notices of a board that is built with these ceilings.
+    /// The notices of a board built with these ceilings.
     const fn notices(self) -> u8 {
         match self {
             Self::InForce => 0,
@@ -75,7 +75,7 @@ impl CeilingPolicy {
 /// Why limits are not stored, or stored limits are not used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitsError {
-    /// The layout is not that of this build: another build has stored them.
+    /// Another build with a different layout has stored them.
     Layout,
     /// A number is not positive or not finite, or the voltage is above the full scale or above 500 V.
     Implausible,
@@ -94,24 +94,24 @@ pub enum LimitsError {
         /// The current, in A.
         found: f32,
     },
-    /// A rail of the amplifier over the series resistance is above [`CURRENT_CEILING_A_PEAK`]: an amplifier that is
-    /// stuck there drives that current through a person.
+    /// The current of an amplifier rail over the series resistance is above [`CURRENT_CEILING_A_PEAK`]. An amplifier
+    /// stuck at the rail would drive that current through a person.
     CurrentAtRail {
         /// The current, in A.
         found: f32,
     },
-    /// The limits were stored for another series resistance than that of this build, on which the touch bound rests.
+    /// The limits were stored for another series resistance than this build's, on which the touch bound is based.
     SeriesResistance {
         /// The series resistance of the stored limits, in Ohm.
         found_ohm: f32,
-        /// That of this build, in Ohm.
+        /// The series resistance of this build, in Ohm.
         built_in_ohm: f32,
     },
-    /// The edges are not those of the electrode behind the series resistance: one of the three numbers is wrong.
+    /// The edges do not match the electrode and the series resistance: one of the three numbers is wrong.
     Edges {
         /// The time constant of the edges, in s.
         found_s: f32,
-        /// That of the electrode behind the series resistance, in s.
+        /// The time constant of the electrode with the series resistance, in s.
         expected_s: f32,
     },
 }
@@ -169,7 +169,7 @@ impl core::error::Error for LimitsError {}
 /// Largest ratio of a rail of the amplifier to the full scale (`hardware/carrier.toml`, PS1).
 pub const RAIL_MAX: f32 = 1.05;
 
-/// Checks limits of a board that people touch against the ceilings. A board asserts it of the limits that are built in.
+/// Checks limits of a board that people touch against the ceilings. A board asserts this for its built-in limits.
 pub const fn check_touched_board(limits: &BoardLimits) -> Result<(), LimitsError> {
     const fn exceeds(number: f32, ceiling: f32) -> bool {
         number > ceiling * (1.0 + ROUNDING)
@@ -188,8 +188,8 @@ pub const fn check_touched_board(limits: &BoardLimits) -> Result<(), LimitsError
     }
 }
 
-/// Checks that the edges are those of the electrode behind the series resistance. No board that stores limits has an
-/// infinite one, which has no touch bound.
+/// Checks that the edges match the electrode and the series resistance. No board that stores limits has an infinite
+/// series resistance, which has no touch bound.
 const fn check_edges(limits: &BoardLimits) -> Result<(), LimitsError> {
     let found_s = limits.edge_time_constant_s;
     let expected_s = limits.series_resistance_ohm * limits.electrode_capacitance_max_f;
@@ -242,9 +242,9 @@ pub fn read_limits(
     check(&limits, ceilings).map(|()| limits)
 }
 
-/// The limits with which a board starts, and its notices: what is stored in `slot`, or else what is built in.
-/// `flash` is `None` on a board without a usable flash. Stored limits that are refused, are damaged or are of another
-/// build's layout leave the built-in ones, with a notice.
+/// The initial limits of a board, and its notices: the limits stored in `slot`, or the built-in ones. `flash` is `None`
+/// on a board without a usable flash. Stored limits that are refused, damaged or have another build's layout are
+/// ignored, with a notice.
 pub fn load_limits<F: Flash>(
     flash: Option<&F>,
     slot: Slot,
@@ -270,7 +270,7 @@ fn check(limits: &BoardLimits, ceilings: CeilingPolicy) -> Result<(), LimitsErro
     }
 }
 
-/// The numbers that bring-up measures or asks for, in the order in which they are stored.
+/// The numbers measured or asked for by bring-up, in the order in which they are stored.
 fn measured(limits: &BoardLimits) -> [f32; 7] {
     [
         limits.voltage_max_v_peak,

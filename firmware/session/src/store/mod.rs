@@ -1,8 +1,8 @@
-//! Persistent storage of the limits that were measured during bring-up.
+//! Persistent storage of the limits measured during bring-up.
 //!
 //! They are stored in a [`Slot`] of two copies. A new copy replaces the older one: its page is erased, then its words
-//! are written, the last of which holds a CRC-32 over the others. A power cut at any byte therefore leaves one good
-//! copy, which [`Slot::find`] finds. [`Writer::step`] does not wait: it begins one operation of the flash at a time.
+//! are written, ending with a CRC-32 over the others. A power failure at any byte thus leaves one good copy, which
+//! [`Slot::find`] finds. [`Writer::step`] does not wait: it begins one flash operation at a time.
 //!
 //! A board implements the [`Flash`] trait, and [`WritableFlash`] if one of its images stores limits.
 
@@ -15,7 +15,7 @@ pub use limits::{
 };
 pub use slot::{COPY_LEN, Slot, Writer, Writing, first_copy};
 
-/// Bytes that the flash writes at once: a double word on the STM32G4 (RM0440, 3.3.7).
+/// Write granularity of the flash, bytes: a double word on the STM32G4 (RM0440, 3.3.7).
 pub const WORD_LEN: usize = 8;
 
 /// The flash memory of a store. Offsets count from the beginning of this memory.
@@ -23,13 +23,13 @@ pub trait Flash {
     /// Bytes of a page.
     const PAGE_LEN: u32;
 
-    /// Reads bytes; must not be called while an operation is under way. Returns `false` if some of the bytes cannot be
-    /// read, such as a word that was half written when the power failed.
+    /// Reads bytes; must not be called during an operation. Returns `false` if some bytes cannot be read, such as a
+    /// word partly written when the power failed.
     #[must_use]
     fn read(&self, offset: u32, bytes: &mut [u8]) -> bool;
 }
 
-/// A flash that an image writes. It is erased in pages, to 0xff, and written in words, each at most once between two
+/// A flash that an image can write. It is erased in pages, to 0xff, and written in words, each at most once between two
 /// erasures.
 pub trait WritableFlash: Flash {
     /// Begins to erase a page.
@@ -46,7 +46,7 @@ pub trait WritableFlash: Flash {
 /// State of an operation of the flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// It is under way.
+    /// The operation is in progress.
     Busy,
     /// The operation has succeeded, or none was begun.
     Done,

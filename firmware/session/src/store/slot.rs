@@ -1,12 +1,12 @@
-//! A slot of two copies of the limits: the search for the newer good one, and the writing of the next.
+//! A slot of two copies of the limits: finds the newer good one, and writes the next.
 
 use frixel_wire::frame::crc32;
 
 use super::{Flash, LIMITS_LEN, Operation, WORD_LEN, WritableFlash};
 
-/// First bytes of a copy. Every change of the layout changes them.
+/// First bytes of a copy, which change with the layout.
 const MAGIC: [u8; 4] = *b"fxl1";
-/// Bytes of a copy: magic, sequence number, limits, CRC-32 of all before it, and four bytes that fill the last word.
+/// Bytes of a copy: magic, sequence number, limits, CRC-32 of all preceding bytes, and four bytes of padding.
 pub const COPY_LEN: usize = 2 * WORD_LEN + LIMITS_LEN;
 /// Bytes that the CRC-32 covers.
 const COVERED_LEN: usize = WORD_LEN + LIMITS_LEN;
@@ -26,7 +26,7 @@ struct Copy {
 }
 
 impl Slot {
-    /// The limits of the newer of the good copies; `None` without one.
+    /// The limits in the newer of the good copies; `None` without one.
     pub fn find<F: Flash>(&self, flash: &F) -> Option<[u8; LIMITS_LEN]> {
         self.newest(flash).map(|copy| copy.limits)
     }
