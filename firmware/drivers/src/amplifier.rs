@@ -2,11 +2,11 @@
 
 use embedded_hal::digital::InputPin;
 
-/// The amplifier's enable behind a one-shot in hardware: it is low unless it is kicked again and again.
+/// The amplifier's enable with a hardware one-shot: it is low unless it is kicked repeatedly.
 ///
-/// A pin that stays as it was set is none: if the firmware hangs, nothing switches the amplifier off. So [`Amplifier`]
-/// takes no `OutputPin`, and a board implements this trait for its one-shot only. Nothing here can fail: an enable
-/// behind a bus that may report errors is none either.
+/// A pin that keeps its level does not qualify: if the firmware hangs, nothing would switch the amplifier off.
+/// [`Amplifier`] therefore takes no `OutputPin`, and a board implements this trait only for its one-shot. Its methods
+/// cannot fail: an enable on a bus that may report errors does not qualify either.
 pub trait KickedEnable {
     /// Enables the amplifier until the one-shot ends, at most 1 ms after the last kick.
     fn kick(&mut self);
@@ -26,7 +26,7 @@ pub trait KickedEnable {
 /// }
 /// ```
 ///
-/// An output that is no one-shot does not compile:
+/// An output without a one-shot does not compile:
 ///
 /// ```compile_fail,E0277
 /// use embedded_hal::digital::{InputPin, OutputPin};
@@ -52,7 +52,7 @@ where
         Self { enable, ready }
     }
 
-    /// Enables the output for the life of the one-shot, or disables it at once.
+    /// Enables the output for the duration of the one-shot, or disables it at once.
     #[inline]
     pub fn set_enabled(&mut self, enabled: bool) {
         if enabled { self.enable.kick() } else { self.enable.disable() }

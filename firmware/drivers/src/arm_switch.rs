@@ -2,18 +2,18 @@
 
 use embedded_hal::digital::InputPin;
 
-/// Time for which the contact must be closed before the switch counts as held: longer than a contact bounces (a few
-/// milliseconds).
+/// Time in us for which the contact must be closed before the switch counts as held: longer than a contact bounces (a
+/// few milliseconds).
 const HELD_AFTER_US: u32 = 20_000;
-/// Time for which the contact must be open before the switch counts as released. This bridges contact breaks from a
+/// Time in us for which the contact must be open before the switch counts as released. It bridges contact breaks from a
 /// moving hand, and leaves 0.3 ms of the 1.1 ms within which the output is off: 0.11 ms for the filter of the wire
-/// (`docs/hardware.md`, "Arm switch"), a tick until the pin is read, a tick until the DAC has the zero.
+/// (`docs/hardware.md`, "Arm switch"), a tick until the pin is read, and a tick until the DAC has the zero.
 const RELEASED_AFTER_US: u32 = 800;
 
 /// A normally open contact, closed while the pin is high.
 ///
-/// The switch never counts as held before its contact has been open once: a welded or taped switch does not arm the
-/// board.
+/// The switch never counts as held before its contact has been open once, so that a welded or taped switch does not arm
+/// the board.
 #[derive(Debug)]
 pub struct ArmSwitch<P> {
     contact: P,
@@ -33,7 +33,7 @@ enum State {
 }
 
 impl<P: InputPin> ArmSwitch<P> {
-    /// A switch whose contact has not been read yet, and is read `tick_hz` times a second.
+    /// A switch whose contact has not been read yet, and will be read `tick_hz` times a second.
     pub const fn new(contact: P, tick_hz: u32) -> Self {
         Self {
             contact,
@@ -44,7 +44,7 @@ impl<P: InputPin> ArmSwitch<P> {
         }
     }
 
-    /// Reads the contact, once a tick, and returns whether the switch is held. A pin that cannot be read counts as
+    /// Reads the contact, once per tick, and returns whether the switch is held. A pin that cannot be read counts as
     /// open.
     #[inline]
     pub fn is_held(&mut self) -> bool {
@@ -66,7 +66,7 @@ impl<P: InputPin> ArmSwitch<P> {
     }
 }
 
-/// The whole ticks in a time.
+/// Number of whole ticks in a time.
 const fn ticks(time_us: u32, tick_hz: u32) -> u32 {
     (time_us as u64 * tick_hz as u64 / 1_000_000) as u32
 }

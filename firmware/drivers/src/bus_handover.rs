@@ -1,4 +1,4 @@
-//! Sharing the DAC's bus between the tick, which sends a frame every period, and the main loop, which configures and
+//! Shares the DAC's bus between the tick, which sends a frame every period, and the main loop, which configures and
 //! reads back.
 
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -19,8 +19,8 @@ impl BusHandover {
         Self { requested: AtomicBool::new(false), granted: AtomicBool::new(false) }
     }
 
-    /// Called once by each tick: returns whether the tick sends its frame. It does not while the main loop has the
-    /// bus. The main loop gets the bus only while the output is zero and no waiting order could change that
+    /// Called once by each tick: returns whether the tick sends its frame, which it does not while the main loop has
+    /// the bus. The main loop gets the bus only while the output is zero and no waiting order could change that
     /// (`output_is_zero`).
     #[inline]
     pub fn tick_sends(&self, output_is_zero: bool) -> bool {
@@ -29,8 +29,8 @@ impl BusHandover {
         !granted
     }
 
-    /// Called by the main loop: runs `work` while the tick sends no frames, and returns when the tick sends them
-    /// again. Calls `poll` while it waits for the tick.
+    /// Called by the main loop: runs `work` while the tick sends no frames, and returns when the tick sends them again.
+    /// Calls `poll` while waiting for the tick.
     pub fn while_frames_rest<R>(&self, mut poll: impl FnMut(), work: impl FnOnce() -> R) -> R {
         self.requested.store(true, Ordering::Release);
         while !self.is_granted() {

@@ -1,6 +1,6 @@
 //! The last fault, kept in RAM across a reset.
 //!
-//! A board places one [`FaultRecord`] in memory that the start-up code does not clear. A panic or a fault
+//! A board places one [`FaultRecord`] in memory not cleared by the start-up code. A panic or a fault
 //! [saves](FaultRecord::save) into it and resets; the next start [takes](FaultRecord::take) the record, once. After
 //! power-on the memory holds random bits, which a CRC-32 distinguishes from a record.
 //!
@@ -14,7 +14,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::frame::Crc32;
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-/// Value of the mark: no single changed bit leaves it valid, and random memory is unlikely to hold it.
+/// Value of the mark: any single changed bit invalidates it, and random memory is unlikely to hold it.
 const MARK: u32 = 0x96c3_6a00;
 
 /// A fault, its detail (a number whose meaning depends on the fault), and a text.
@@ -27,7 +27,7 @@ pub struct FaultRecord {
     mark: AtomicU32,
 }
 
-/// Room for the text of a record.
+/// Buffer for the text of a record.
 pub type Text = [u8; FAULT_TEXT_MAX_LEN];
 
 impl FaultRecord {
@@ -44,8 +44,7 @@ impl FaultRecord {
         }
     }
 
-    /// Whether the record was in memory that has kept its content since an earlier start. To be asked before this start
-    /// marks it.
+    /// Whether the record's memory has kept its content since an earlier start. Call this before this start marks it.
     pub fn has_outlasted_reset(&self) -> bool {
         self.mark.load(Ordering::Relaxed) == MARK
     }
@@ -55,7 +54,7 @@ impl FaultRecord {
         self.mark.store(MARK, Ordering::Relaxed);
     }
 
-    /// Stores a fault and the text that `write_text` writes, cut to [`FAULT_TEXT_MAX_LEN`] bytes.
+    /// Stores a fault and the text written by `write_text`, truncated to [`FAULT_TEXT_MAX_LEN`] bytes.
     pub fn save(&self, fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) {
         self.forget();
         self.number.store(u32::from(fault.number()), Ordering::Relaxed);
@@ -98,12 +97,12 @@ impl FaultRecord {
     }
 }
 
-/// Writes into the text of a record, whole characters only. It never fails. [`Writer::text`] and [`Writer::hex`] do not
-/// use `core::fmt`, which takes 3 KiB of an image.
+/// Writes the text of a record, in whole characters. It never fails. [`Writer::text`] and [`Writer::hex`] do not use
+/// `core::fmt`, which takes 3 KiB of an image.
 pub struct Writer<'r> {
     record: &'r FaultRecord,
     len: usize,
-    /// The text was cut; nothing more is written.
+    /// Whether the text was truncated; nothing more is written.
     full: bool,
 }
 

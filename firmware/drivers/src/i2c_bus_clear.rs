@@ -1,23 +1,23 @@
-//! Freeing an I2C bus whose data line is held low.
+//! Frees an I2C bus whose data line is held low.
 //!
-//! A reset in the middle of a transfer leaves the target waiting for clocks, with SDA low when the bit that it sends,
-//! or its acknowledgement, is zero. The controller then cannot begin a transfer. NXP's UM10204, section 3.1.16, "Bus
-//! clear" (unread): the controller sends clock pulses, and the target releases SDA within nine.
+//! A reset in the middle of a transfer leaves the target waiting for clocks, with SDA low if its current bit or
+//! acknowledgement is zero. The controller then cannot begin a transfer. According to NXP's UM10204, section 3.1.16,
+//! "Bus clear" (unread), the controller sends clock pulses, and the target releases SDA within nine.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal_async::delay::DelayNs;
 
-/// Most clock pulses until the target has released SDA.
+/// Largest number of clock pulses until the target releases SDA.
 const PULSES: u32 = 9;
-/// Half a period of the clock, in nanoseconds: 100 kHz, the standard mode, which every target takes.
+/// Half a period of the clock, in nanoseconds: 100 kHz, the standard mode, which every target supports.
 const HALF_PERIOD_NS: u32 = 5_000;
 
-/// Sends clock pulses until SDA is high, nine at most, and returns whether it is. `scl` is an open-drain output, and
-/// SDA is released. A pin that cannot be read counts as low.
+/// Sends up to nine clock pulses until SDA is high, and returns whether it is. `scl` is an open-drain output, and SDA
+/// is released. A pin that cannot be read counts as low.
 ///
-/// The target may still be in the middle of a byte: the next transfer must follow, because its START condition is what
-/// resets the target. So no pulse is sent once SDA is high: at the ninth, a target that receives would acknowledge,
-/// which holds SDA low again.
+/// The target may still be in the middle of a byte: the next transfer must follow, because its START condition resets
+/// the target. No pulse is sent once SDA is high: at the ninth, a receiving target would acknowledge, which holds SDA
+/// low again.
 pub async fn clear_bus(scl: &mut impl OutputPin, sda: &mut impl InputPin, delay: &mut impl DelayNs) -> bool {
     for _ in 0..PULSES {
         if matches!(sda.is_high(), Ok(true)) {

@@ -1,5 +1,5 @@
-//! Transfers over the FIFOs of the I2C controller of the RP2040 and the RP2350, which are served whenever the main loop
-//! polls (RP2040, 4.3, "I2C").
+//! Transfers over the FIFOs of the I2C controller of the RP2040 and the RP2350, served whenever the main loop polls
+//! (RP2040, 4.3, "I2C").
 
 use embedded_hal_async::i2c::Operation;
 
@@ -11,25 +11,25 @@ pub trait I2cFifos {
     /// Whether there is room for a command.
     fn has_room(&self) -> bool;
 
-    /// Gives a command: writes the byte, or reads one. The last one of a transfer ends with STOP.
+    /// Issues a command: writes the byte, or reads one. The last one of a transfer ends with STOP.
     fn command(&mut self, write: Option<u8>, is_last: bool);
 
-    /// Takes a byte that was read.
+    /// Returns a byte that was read.
     fn receive(&mut self) -> Option<u8>;
 }
 
 /// Progress of a transfer.
 #[derive(Debug, Default)]
 pub struct FifoTransfer {
-    /// Bytes whose commands are in the FIFO or were carried out.
+    /// Bytes whose commands are in the FIFO or were executed.
     sent: usize,
     /// Bytes that were read.
     received: usize,
 }
 
 impl FifoTransfer {
-    /// Fills the transmit FIFO: with the bytes to write, or with commands to read, of which no more may be under way
-    /// than the receive FIFO holds.
+    /// Fills the transmit FIFO with the bytes to write, or with read commands, at most as many as the receive FIFO can
+    /// hold.
     pub fn send(&mut self, fifos: &mut impl I2cFifos, operation: &Operation<'_>) {
         let (bytes, is_read): (&[u8], bool) = match operation {
             Operation::Read(bytes) => (bytes, true),
@@ -55,7 +55,7 @@ impl FifoTransfer {
         }
     }
 
-    /// Whether all bytes were read, or given to be written.
+    /// Whether all bytes were read, or queued for writing.
     pub fn is_complete(&self, operation: &Operation<'_>) -> bool {
         match operation {
             Operation::Read(bytes) => self.received == bytes.len(),

@@ -1,5 +1,5 @@
 //! Drivers of the parts on a driver board, over `embedded-hal` 1.0, `embedded-hal-async` and `embedded-io`. A board's
-//! own crate holds registers and wiring only, and implements those traits; the chip models of `frixel-hil-sim`
+//! own crate contains only registers and wiring, and implements those traits; the chip models of `frixel-hil-sim`
 //! implement them too, and the tests run these drivers against the models.
 //!
 //! | module | part | traits |

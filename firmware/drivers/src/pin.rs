@@ -1,4 +1,4 @@
-//! Pins that are registers of the processor, as `embedded-hal` has them: reading and setting them never fails.
+//! Processor pins as `embedded-hal` pins: reading and setting them never fails.
 
 use core::convert::Infallible;
 

@@ -1,33 +1,33 @@
-//! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, as the words that its state machines
-//! execute (RP2040 data sheet, 3.4, "Instruction Set"). A board writes its programs with them.
+//! Instructions of the programmable I/O (PIO) of the RP2040 and the RP2350, encoded for its state machines (RP2040 data
+//! sheet, 3.4, "Instruction Set"). A board writes its programs with them.
 //!
-//! Every function panics if a number does not fit into its instruction. In constants, where programs stand, that fails
-//! to compile.
+//! Every function panics if a number does not fit into its instruction. In constants, where programs are defined, that
+//! fails to compile.
 //!
-//! A state machine takes one cycle of its divided clock for an instruction, and as many more as [`Instruction::delay`]
-//! says. It shares the five bits of that number with the pins of [`Instruction::side`].
+//! A state machine takes one cycle of its divided clock per instruction, plus the cycles of [`Instruction::delay`].
+//! That number shares five bits with the pins of [`Instruction::side`].
 
 /// An instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction(u16);
 
-/// When to jump.
+/// Condition of a jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// Always.
     Always = 0,
-    /// Register X is not zero; it is decremented after the comparison, whatever it is.
+    /// Register X is not zero; it is then decremented in any case.
     XNotZeroDecrement = 2,
     /// Register Y is zero.
     YZero = 3,
-    /// Register Y is not zero; it is decremented after the comparison, whatever it is.
+    /// Register Y is not zero; it is then decremented in any case.
     YNotZeroDecrement = 4,
 }
 
-/// What an instruction writes.
+/// Destination of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Destination {
-    /// The pins that the machine is configured for.
+    /// The pins configured for the machine.
     Pins = 0,
     /// Register X.
     X = 1,
@@ -37,17 +37,17 @@ pub enum Destination {
     PinDirections = 4,
 }
 
-/// What [`copy`] reads.
+/// Source of [`copy`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The status that the machine is configured for: all ones while the transmit FIFO holds fewer words than it says.
+    /// The configured status: all ones while the transmit FIFO holds fewer words than configured.
     Status = 5,
     /// The output shift register.
     OutputShift = 7,
 }
 
 impl Instruction {
-    /// Waits for so many cycles after the instruction.
+    /// Waits for this number of cycles after the instruction.
     ///
     /// # Panics
     /// If they need more than five bits. Use it in a constant, where that fails to compile.
@@ -57,8 +57,7 @@ impl Instruction {
         Self(self.0 | cycles << 8)
     }
 
-    /// Sets the side-set pins, of which there are `count`, at the beginning of the instruction. The delay then has
-    /// `count` bits fewer.
+    /// Sets the `count` side-set pins at the start of the instruction. The delay then has `count` bits fewer.
     ///
     /// # Panics
     /// If the levels or the delay do not fit. Use it in a constant, where that fails to compile.
@@ -117,9 +116,9 @@ pub const fn shift_out(to: Destination, bits: u16) -> Instruction {
 
 /// Moves the input shift register to the receive FIFO; drops it if the FIFO is full.
 pub const PUSH: Instruction = Instruction(0x8000);
-/// Takes a word from the transmit FIFO into the output shift register; takes register X if the FIFO is empty.
+/// Moves a word from the transmit FIFO to the output shift register; uses register X if the FIFO is empty.
 pub const PULL: Instruction = Instruction(0x8080);
-/// Waits for a word in the transmit FIFO, and takes it into the output shift register.
+/// Waits for a word in the transmit FIFO, and moves it to the output shift register.
 pub const PULL_BLOCKING: Instruction = Instruction(0x80a0);
 
 /// Copies a register.

@@ -1,10 +1,10 @@
-//! Futures without an executor: the main loop polls them again and again.
+//! Futures without an executor, polled repeatedly by the main loop.
 
 use core::future::{Future, poll_fn};
 use core::pin::Pin;
 use core::task::{Context, Poll, Waker};
 
-/// Polls a future once. Nothing wakes it: the caller polls again.
+/// Polls a future once. It has no waker: the caller polls again.
 pub fn poll_once<F: Future + ?Sized>(future: Pin<&mut F>) -> Poll<F::Output> {
     future.poll(&mut Context::from_waker(Waker::noop()))
 }

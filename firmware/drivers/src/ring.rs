@@ -1,12 +1,12 @@
-//! The ring into which DMA, or an interrupt, writes serial bytes.
+//! The ring into which DMA or an interrupt writes serial bytes.
 
 use core::ops::Range;
 use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 /// The read position in a ring of `LEN` bytes that DMA fills in circular mode.
 ///
-/// DMA does not report how often it has wrapped, so bytes are lost unless fewer than `LEN` wait to be read. On a
-/// frixel board the host's credit ensures that.
+/// DMA does not report how often it has wrapped, so bytes are lost unless fewer than `LEN` are unread. On a frixel
+/// board, the host's credit ensures that.
 #[derive(Debug, Default)]
 pub struct RingReader<const LEN: usize> {
     next: usize,
@@ -23,8 +23,7 @@ impl<const LEN: usize> RingReader<LEN> {
         Self::write_position(remaining) == self.next
     }
 
-    /// Takes the next contiguous bytes, at most `max_len`, and returns their range in the ring. Empty when all are
-    /// taken.
+    /// Takes the next contiguous bytes, at most `max_len`, and returns their range in the ring. Empty if all are taken.
     pub fn take(&mut self, remaining: usize, max_len: usize) -> Range<usize> {
         let write = Self::write_position(remaining);
         let end = if write < self.next { LEN } else { write };
@@ -33,8 +32,8 @@ impl<const LEN: usize> RingReader<LEN> {
         piece
     }
 
-    /// Copies the next bytes of `ring` to the beginning of `bytes`, and returns their number. Waits for the first one;
-    /// `remaining` is called until there is one.
+    /// Copies the next bytes of `ring` to the start of `bytes`, and returns their number. Waits for the first one,
+    /// calling `remaining` repeatedly.
     pub fn read(&mut self, ring: &[AtomicU8; LEN], mut remaining: impl FnMut() -> usize, bytes: &mut [u8]) -> usize {
         if bytes.is_empty() {
             return 0;
@@ -58,12 +57,12 @@ impl<const LEN: usize> RingReader<LEN> {
     }
 }
 
-/// A ring that an interrupt fills byte by byte, where there is no DMA.
+/// A ring filled byte by byte by an interrupt, where there is no DMA.
 pub struct InterruptRing<const LEN: usize> {
     /// The bytes.
     pub bytes: [AtomicU8; LEN],
-    /// Place of the next byte. Only the interrupt writes it. It counts from zero, so that a static is all zeros at first,
-    /// which takes no flash.
+    /// Place of the next byte, written only by the interrupt. It starts at zero, so that a static is initially all
+    /// zeros, which takes no flash.
     next: AtomicUsize,
 }
 
@@ -84,7 +83,7 @@ impl<const LEN: usize> InterruptRing<LEN> {
         self.next.store(if next + 1 < LEN { next + 1 } else { 0 }, Ordering::Release);
     }
 
-    /// Bytes until the ring begins anew, as DMA would count them.
+    /// Bytes until the ring wraps around, as DMA would count them.
     #[inline]
     pub fn remaining(&self) -> usize {
         LEN - self.next.load(Ordering::Acquire)

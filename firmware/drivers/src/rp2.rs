@@ -1,12 +1,12 @@
-//! What registers of the RP2040 and the RP2350 mean: values in, values out, so that tests can hold it without the
-//! processor. And where the flash holds the limits, for whoever writes them beforehand.
+//! Meaning of registers of the RP2040 and the RP2350, as pure functions for tests without the processor. Also the
+//! location of the limits in the flash, for tools that write them in advance.
 
 use frixel_wire::hello::ResetCause;
 
-/// Offset of the stored limits in the flash: what is in front belongs to the image.
+/// Offset of the stored limits in the flash, after the image.
 pub const LIMITS_OFFSET: u32 = 1 << 20;
 
-/// What the chips say of the last reset, whichever registers they say it in.
+/// The chips' flags about the last reset, independent of their registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools, reason = "they are flags of registers")]
 pub struct ResetFlags {
@@ -22,7 +22,7 @@ pub struct ResetFlags {
     pub run_pin: bool,
 }
 
-/// The cause of a reset. It was a brown-out if the chip says that power came on, and RAM has kept its content
+/// The cause of a reset. It was a brown-out if the chip reports power-on, but RAM has kept its content
 /// (`ram_survived`).
 pub const fn reset_cause(flags: ResetFlags, ram_survived: bool) -> ResetCause {
     if flags.watchdog_timer {
@@ -36,7 +36,7 @@ pub const fn reset_cause(flags: ResetFlags, ram_survived: bool) -> ResetCause {
     } else if flags.run_pin {
         ResetCause::Pin
     } else {
-        // A debugger, which resets the processor alone.
+        // A debugger, which resets only the processor.
         ResetCause::Software
     }
 }

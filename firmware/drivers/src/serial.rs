@@ -2,7 +2,7 @@
 
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 
-/// Number of bytes that are moved at a time: more than a frame of the protocol.
+/// Number of bytes moved at a time: more than a frame of the protocol.
 const CHUNK_LEN: usize = 256;
 
 /// A port, and the bytes that it has not accepted yet.
@@ -10,7 +10,7 @@ const CHUNK_LEN: usize = 256;
 pub struct SerialLink<P> {
     port: P,
     transmitting: [u8; CHUNK_LEN],
-    /// Number of bytes of `transmitting` that the port has accepted, and number of bytes in it.
+    /// Number of bytes of `transmitting` accepted by the port, and number of bytes in it.
     taken: usize,
     len: usize,
 }
@@ -21,7 +21,7 @@ impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
         Self { port, transmitting: [0; CHUNK_LEN], taken: 0, len: 0 }
     }
 
-    /// Passes received bytes to `take`, at most 256 of them, so that the caller can do other work between two calls.
+    /// Passes up to 256 received bytes to `take`, so that the caller can do other work between two calls.
     pub fn receive(&mut self, take: impl FnOnce(&[u8])) -> Result<(), P::Error> {
         if self.port.read_ready()? {
             let mut bytes = [0; CHUNK_LEN];
@@ -31,8 +31,8 @@ impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
         Ok(())
     }
 
-    /// Sends bytes from `fill` until the port accepts no more. `fill` writes bytes and returns their number, 0 when
-    /// there is nothing to send.
+    /// Sends bytes from `fill` until the port accepts no more. `fill` writes bytes and returns their number, 0 if there
+    /// is nothing to send.
     pub fn transmit(&mut self, mut fill: impl FnMut(&mut [u8]) -> usize) -> Result<(), P::Error> {
         while self.port.write_ready()? {
             if self.taken == self.len {

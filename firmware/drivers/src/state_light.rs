@@ -3,10 +3,11 @@
 use embedded_hal::digital::OutputPin;
 use frixel_wire::fault::State;
 
-/// Changes a second while it blinks.
+/// Changes per second while blinking, Hz.
 const BLINK_HZ: u32 = 8;
 
-/// A light that is off while the board is disarmed, on while it is armed or plays, and blinks while a fault is latched.
+/// A light that is off while the board is disarmed, on while it is armed or active, and blinking while a fault is
+/// latched.
 #[derive(Debug)]
 pub struct StateLight<P> {
     pin: P,
@@ -14,7 +15,7 @@ pub struct StateLight<P> {
 }
 
 impl<P: OutputPin> StateLight<P> {
-    /// A light that is on while `pin` is high, of a board with `tick_hz` ticks a second.
+    /// A light that is on while `pin` is high, on a board with the tick rate `tick_hz`.
     pub const fn new(pin: P, tick_hz: u32) -> Self {
         Self { pin, blink_ticks: tick_hz / BLINK_HZ }
     }

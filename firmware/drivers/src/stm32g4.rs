@@ -1,5 +1,5 @@
-//! What registers of the STM32G4 mean: values in, values out, so that tests can hold it without the processor. RM0440
-//! is its reference manual.
+//! Meaning of registers of the STM32G4, as pure functions for tests without the processor. RM0440 is the reference
+//! manual.
 
 use frixel_wire::hello::ResetCause;
 
@@ -11,8 +11,8 @@ const SOFTWARE: u32 = 1 << 28;
 const INDEPENDENT_WATCHDOG: u32 = 1 << 29;
 const WINDOW_WATCHDOG: u32 = 1 << 30;
 
-/// The cause of a reset from the flags of `RCC_CSR`. Every reset sets the flag of the pin, and power-on sets that of a
-/// brown-out: it was a brown-out if RAM has kept its content (`ram_survived`).
+/// The cause of a reset from the flags of `RCC_CSR`. Every reset sets the pin flag, and power-on sets the brown-out
+/// flag: it was a brown-out if RAM has kept its content (`ram_survived`).
 pub const fn reset_cause(rcc_csr: u32, ram_survived: bool) -> ResetCause {
     if rcc_csr & (INDEPENDENT_WATCHDOG | WINDOW_WATCHDOG) != 0 {
         ResetCause::Watchdog
@@ -31,15 +31,15 @@ pub const fn reset_cause(rcc_csr: u32, ram_survived: bool) -> ResetCause {
 const ECC_IN_BANK_2: u32 = 1 << 21;
 const ECC_NOT_CORRECTED: u32 = 1 << 31;
 
-/// Whether a non-maskable interrupt reports an error that a read of bank 2, which holds the stores, has met, as when
-/// power failed while the word was written: not a reason to reset, because every start reads the stores.
+/// Whether a non-maskable interrupt reports an error from reading bank 2, which holds the stores, as when power failed
+/// while the word was written. This is not a reason to reset, since every start reads the stores.
 ///
-/// While a store is read (`reading_store`), the bank that `FLASH_ECCR` states does not matter: the register's content
-/// may be corrupt after a reset or a loss of power during programming, which is when such words exist (errata sheet
-/// ES0430, on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
+/// While a store is read (`reading_store`), the bank stated by `FLASH_ECCR` does not matter: the register's content may
+/// be corrupt after a reset or a loss of power during programming, which is when such words arise (errata sheet ES0430,
+/// on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
 ///
-/// So an error of the image's own flash in that time counts as the store's, too: the read fails, and what the processor
-/// has fetched is left to the fault handlers.
+/// An error of the image's own flash in that time thus counts as the store's: the read fails, and the processor's own
+/// fetches are left to the fault handlers.
 pub const fn is_store_ecc_error(flash_eccr: u32, reading_store: bool) -> bool {
     flash_eccr & ECC_NOT_CORRECTED != 0 && (reading_store || flash_eccr & ECC_IN_BANK_2 != 0)
 }
@@ -53,7 +53,7 @@ const TWO_BANKS: u32 = 1 << 22;
 const NO_RAM_PARITY: u32 = 1 << 24;
 const RESET_PIN_IN_AND_OUT: u32 = 0b11 << 28;
 
-/// Whether the option bytes, as `FLASH_OPTR` shows them, are those that `docs/hardware.md` asks for ("Option bytes").
+/// Whether the option bytes, as shown by `FLASH_OPTR`, are those required by `docs/hardware.md` ("Option bytes").
 pub const fn option_bytes_are_right(flash_optr: u32) -> bool {
     const SET: u32 = BROWN_OUT_LEVEL_4 | TWO_BANKS | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
     flash_optr & (SET | BROWN_OUT_LEVEL | SOFTWARE_WATCHDOG | BOOT_FROM_BANK_2) == SET

@@ -1,4 +1,4 @@
-//! The DAC's bus as an `SpiDevice`, over a processor's exchange of bytes.
+//! The DAC's bus as an `SpiDevice`, based on a processor's exchange of bytes.
 
 use embedded_hal::spi::{self, ErrorKind, ErrorType, Operation, SpiDevice};
 
@@ -6,7 +6,7 @@ use super::{FRAME_LEN, Frame};
 
 /// A processor's side of the bus.
 pub trait FrameBus {
-    /// Sends bytes while SYNC is low, and replaces each by the byte received meanwhile.
+    /// Sends bytes while SYNC is low, and replaces each by the byte received at the same time.
     fn exchange(&mut self, bytes: &mut [u8]) -> Result<(), BusError>;
 }
 
@@ -16,7 +16,7 @@ pub trait FrameBus {
 pub enum BusError {
     /// The bus did not become idle, or did not receive a byte.
     Timeout,
-    /// Anything but one frame in a transaction, which the driver never needs.
+    /// A transaction other than a single frame, which the driver never needs.
     Unsupported,
 }
 
@@ -26,7 +26,7 @@ impl spi::Error for BusError {
     }
 }
 
-/// The bus as the driver takes it: one frame in a transaction.
+/// The bus for the driver: one frame per transaction.
 #[derive(Debug)]
 pub struct FrameDevice<B>(pub B);
 

@@ -1,9 +1,9 @@
 //! Frames and control register of the AD5761R (Analog Devices data sheet, rev. C, "Input shift register" and
 //! "Control register").
 //!
-//! A frame is 24 bits, the most significant first: four zeros, a 4-bit address, 16 bits of data. The DAC samples a bit
-//! at every falling edge of SCLK while SYNC is low, and executes the frame at the rising edge of SYNC. It ignores a
-//! frame that is cut short.
+//! A frame is 24 bits, most significant first: four zeros, a 4-bit address, 16 bits of data. The DAC samples a bit at
+//! every falling edge of SCLK while SYNC is low, and executes the frame at the rising edge of SYNC. It ignores a
+//! truncated frame.
 
 use frixel_wire::dac_code::DacCode;
 
@@ -12,7 +12,7 @@ pub const FRAME_LEN: usize = 3;
 /// A frame as it goes over the bus.
 pub type Frame = [u8; FRAME_LEN];
 
-/// Address: write the DAC register and update the output at the rising edge of SYNC, whatever LDAC is.
+/// Address: write the DAC register and update the output at the rising edge of SYNC, regardless of LDAC.
 const WRITE_DAC: u8 = 0x3;
 /// Address: write the control register.
 const WRITE_CONTROL: u8 = 0x4;
@@ -50,7 +50,7 @@ pub const RESET: Frame = frame(RESET_ADDRESS, 0);
 pub const CONFIGURE: Frame = frame(WRITE_CONTROL, CONFIGURATION);
 /// Requests the control register, which the DAC shifts out with the next frame.
 pub const READ_CONTROL: Frame = frame(READ_CONTROL_ADDRESS, 0);
-/// Has no effect. It clocks out the answer to [`READ_CONTROL`].
+/// Has no effect, but clocks out the answer to [`READ_CONTROL`].
 pub const NO_OPERATION: Frame = frame(0, 0);
 
 /// Sets the output: a code is a fraction of 10 V.
@@ -75,7 +75,7 @@ impl Control {
         Self(u16::from_be_bytes([high, low]))
     }
 
-    /// Whether range, coding and reference are those of [`CONFIGURE`].
+    /// Whether range, coding and reference match [`CONFIGURE`].
     pub const fn is_configured(self) -> bool {
         self.0 & CONFIGURATION_MASK == CONFIGURATION
     }

@@ -1,7 +1,7 @@
 //! AD5761R: a 16-bit bipolar DAC with an internal reference (Analog Devices data sheet, rev. C).
 //!
 //! [`Ad5761r`] configures and checks the chip over `embedded-hal`. A board that updates the output at a fixed rate
-//! sends [`output`] frames by its own hardware meanwhile; driver and tick share the bus in turns
+//! sends [`output`] frames by its own hardware; driver and tick take turns on the bus
 //! ([`BusHandover`](crate::bus_handover::BusHandover)). [`zero_output`] is for panics, faults and the first
 //! instructions after a reset.
 
@@ -21,8 +21,8 @@ pub use frame::{CONFIGURE, Control, FRAME_LEN, Frame, NO_OPERATION, READ_CONTROL
 /// Time for a software reset, in microseconds. The data sheet states none; 10 us is the longest of its other times.
 const RESET_US: u32 = 10;
 
-/// The DAC on an SPI bus: mode 2 (clock idle high, sampled at the falling edge), at most 50 MHz to write, and 12 MHz to
-/// read, because SDO follows an edge by up to 40 ns.
+/// The DAC on an SPI bus in mode 2 (clock idle high, sampled at the falling edge), at most 50 MHz for writing, and 12
+/// MHz for reading, because SDO follows an edge by up to 40 ns.
 #[derive(Debug)]
 pub struct Ad5761r<S, D> {
     spi: S,
@@ -35,7 +35,7 @@ pub struct Ad5761r<S, D> {
 pub enum Error<E> {
     /// The bus failed.
     Spi(E),
-    /// The control register does not hold the configuration that was written: no DAC, no supply, or a broken wire.
+    /// The control register differs from the written configuration: no DAC, no supply, or a broken wire.
     Configuration(Control),
     /// The supply dipped after the configuration was written.
     BrownOut(Control),
@@ -43,7 +43,7 @@ pub enum Error<E> {
     ShortCircuit(Control),
 }
 
-/// [`Error::detail`] of a bus that failed; no control register has this bit.
+/// [`Error::detail`] of a failed bus; no control register has this bit.
 pub const DETAIL_SPI: u32 = 1 << 16;
 
 impl<E> Error<E> {
@@ -83,18 +83,18 @@ impl<E> From<E> for Error<E> {
     }
 }
 
-/// Sets the output to zero from any state, even in the middle of a frame: for panics, faults, and as the first thing
+/// Sets the output to zero from any state, even in the middle of a frame: for panics, faults, and as the first action
 /// after every reset. Returns with CLEAR low.
 ///
-/// The order of the edges matters. The amplifier is disabled first. Then SYNC rises, at which the DAC executes the
-/// frame that it has received, or discards one that is cut short; after that, clocks that are still under way have no
-/// effect. The falling edge of CLEAR comes last, because only the edge sets the DAC to zero: a frame that is executed
-/// after it puts its code out (data sheet, "Pin configuration and function descriptions", unread). CLEAR is set high
-/// before, because it may be low already, as after a reset. The times that the chip needs between these edges are
-/// unread (data sheet, "Timing characteristics"); setting a pin takes 70 ns or more at 170 MHz.
+/// The order of the edges matters. The amplifier is disabled first. Then SYNC rises: the DAC executes a complete frame,
+/// or discards a truncated one, and further clocks have no effect. The falling edge of CLEAR comes last, because only
+/// the edge sets the DAC to zero: a frame executed after it would output its code (data sheet, "Pin configuration and
+/// function descriptions", unread). CLEAR is set high before, because it may already be low, as after a reset. The
+/// times required between these edges are unread (data sheet, "Timing characteristics"); setting a pin takes 70 ns or
+/// more at 170 MHz.
 ///
-/// The pins' former functions must no longer drive them once they are set. A pin that reports an error is passed over:
-/// the others are set all the same.
+/// The pins' former functions must no longer drive them once they are set. A pin that reports an error is skipped; the
+/// others are still set.
 pub fn zero_output(enable: &mut impl OutputPin, sync: &mut impl OutputPin, clear: &mut impl OutputPin) {
     let _ = enable.set_low();
     let _ = sync.set_high();
@@ -103,7 +103,7 @@ pub fn zero_output(enable: &mut impl OutputPin, sync: &mut impl OutputPin, clear
 }
 
 impl<S: SpiDevice, D: DelayNs> Ad5761r<S, D> {
-    /// A driver for the DAC behind `spi`. It sends nothing yet.
+    /// Creates a driver for the DAC on `spi`. Sends nothing yet.
     pub const fn new(spi: S, delay: D) -> Self {
         Self { spi, delay }
     }

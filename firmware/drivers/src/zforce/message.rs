@@ -1,26 +1,26 @@
 //! Messages of the zForce modules (Neonode Touch Sensor Module User's Guide: serialization protocol quick start, ASN.1
 //! PDU examples).
 //!
-//! On I2C, every message has two bytes in front, `ee` and its length. The module raises its data-ready pin while a
-//! message waits; the host reads the two bytes first, then the message.
+//! On I2C, every message is preceded by two bytes, `ee` and its length. The module raises its data-ready pin while a
+//! message is unread; the host reads the two bytes first, then the message.
 
 /// Address on the I2C bus, 7 bits.
 pub const I2C_ADDRESS: u8 = 0x50;
 /// First byte on the bus.
 const TRANSPORT: u8 = 0xee;
-/// Bytes in front of a message.
+/// Bytes before a message.
 pub const LENGTH_LEN: usize = 2;
-/// Largest length of a message that is read: a notification of up to eight touches.
+/// Largest length of a message: a notification of up to eight touches.
 pub const MESSAGE_MAX_LEN: usize = 127;
 
-/// Request: 200 scans a second, with a finger and without.
+/// Request: 200 scans per second, with and without a finger.
 pub const SET_FREQUENCY: [u8; 18] =
     [TRANSPORT, 0x10, 0xee, 0x0e, 0x40, 0x02, 0x00, 0x00, 0x68, 0x08, 0x80, 0x02, 0x00, 0xc8, 0x82, 0x02, 0x00, 0xc8];
 /// Request: send notifications from now on.
 pub const ENABLE: [u8; 13] = [TRANSPORT, 0x0b, 0xee, 0x09, 0x40, 0x02, 0x02, 0x00, 0x65, 0x03, 0x81, 0x01, 0x00];
 
 const NOTIFICATION: u8 = 0xf0;
-/// The sensor itself, as opposed to the module that it sits on.
+/// The sensor itself, as opposed to its module.
 const SENSOR_ADDRESS: [u8; 4] = [0x40, 0x02, 0x02, 0x00];
 const TOUCHES: u8 = 0xa0;
 const TOUCH: u8 = 0x42;
@@ -28,7 +28,7 @@ const BOOT_COMPLETE: u8 = 0x63;
 const EVENT_DOWN: u8 = 0;
 const EVENT_MOVE: u8 = 1;
 const EVENT_UP: u8 = 2;
-/// A byte that is read while nobody drives the bus.
+/// A byte read while no device drives the bus.
 const RELEASED: u8 = 0xff;
 /// Coordinates are in tenths of a millimetre.
 const M_PER_UNIT: f32 = 1e-4;
@@ -37,7 +37,7 @@ const M_PER_UNIT: f32 = 1e-4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Touch {
-    /// A finger is here, in metres from the sensor's own corner.
+    /// A finger at this place, in metres from the sensor's own corner.
     Down {
         /// Along the sensor.
         x_m: f32,
@@ -59,13 +59,13 @@ pub enum Message {
     Other,
 }
 
-/// Length of the message after this header; `None` when the header is invalid.
+/// Length of the message after this header; `None` for an invalid header.
 pub fn message_len(length: [u8; LENGTH_LEN]) -> Option<usize> {
     let [transport, len] = length;
     (transport == TRANSPORT && len > 0 && usize::from(len) <= MESSAGE_MAX_LEN).then_some(usize::from(len))
 }
 
-/// Parses a message. Of several touches it takes the first.
+/// Parses a message. If it contains several touches, returns the first.
 pub fn parse(message: &[u8]) -> Message {
     let Some((NOTIFICATION, content, _)) = element(message) else { return Message::Other };
     let Some((address, body)) = content.split_first_chunk::<4>() else { return Message::Other };
@@ -79,9 +79,9 @@ pub fn parse(message: &[u8]) -> Message {
     }
 }
 
-/// A module that stops in the middle of a report releases the bus, and the rest of the bytes are ones: so a place is
-/// ignored if the last byte of its report is that. It may be half of the finger's, and the byte is a confidence of 255,
-/// which is assumed not to be stated. A lift that was read stands.
+/// A module that stops in the middle of a report releases the bus, and the remaining bytes read as ones. A place is
+/// therefore ignored if the last byte of its report is all ones: the place may be incomplete, and the byte would be a
+/// confidence of 255, which is assumed not to occur. A complete lift is valid.
 fn parse_touch(touch: &[u8]) -> Message {
     match *touch {
         [_, EVENT_UP, ..] => Message::Touch(Touch::Up),
@@ -94,8 +94,7 @@ fn parse_touch(touch: &[u8]) -> Message {
     }
 }
 
-/// Splits the first element off these bytes: its tag, its content, and the remaining bytes. Lengths above 127 do not
-/// occur.
+/// Splits off the first element: its tag, its content, and the remaining bytes. Lengths above 127 do not occur.
 fn element(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let ([tag, len], rest) = bytes.split_first_chunk()?;
     let (content, rest) = rest.split_at_checked(usize::from(*len))?;

@@ -1,8 +1,8 @@
 //! Neonode zForce touch sensor module: a bar of infrared light along one edge of the screen, which measures the finger
-//! without touching glass or drive (Neonode Touch Sensor Module User's Guide: I2C transport).
+//! without contact to glass or drive (Neonode Touch Sensor Module User's Guide: I2C transport).
 //!
-//! The driver is asynchronous, because a transfer takes milliseconds. No executor is needed:
-//! [`poll_once`](crate::polling::poll_once) in the main loop will do.
+//! The driver is asynchronous, because a transfer takes milliseconds. It needs no executor: call
+//! [`poll_once`](crate::polling::poll_once) in the main loop.
 
 mod message;
 
@@ -18,11 +18,11 @@ pub use message::{
 
 use crate::polling::yield_now;
 
-/// Pause after a transfer that failed, before the module is set up again.
+/// Pause after a failed transfer, before the module is set up again, ms.
 const PAUSE_MS: u32 = 100;
-/// Bytes of a transfer that is discarded: a report of two fingers.
+/// Bytes of a discarded transfer: a report of two fingers.
 const DISCARDED_LEN: usize = 32;
-/// Most transfers that are discarded between two pauses, 50 ms at 400 kHz: more than a module has reported in a pause.
+/// Largest number of transfers discarded between two pauses, 50 ms at 400 kHz: more than a module reports in a pause.
 const DISCARDED_MAX: u32 = 64;
 
 /// The module: its bus, its data-ready pin (high while a message waits), and a delay.
@@ -42,7 +42,7 @@ pub enum Error<E> {
     I2c(E),
     /// The data-ready pin could not be read.
     DataReady,
-    /// Messages wait however many are read.
+    /// There are always more messages, however many are read.
     Waiting,
     /// Invalid header: expected `ee` and a length from 1 to 127.
     Length([u8; LENGTH_LEN]),
@@ -78,7 +78,7 @@ impl<E> From<E> for Error<E> {
 }
 
 impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
-    /// A driver for the module on `bus`. It sends nothing yet.
+    /// Creates a driver for the module on `bus`. Sends nothing yet.
     pub const fn new(bus: B, data_ready: R, delay: D) -> Self {
         Self { bus, data_ready, delay, is_set_up: false }
     }
@@ -124,8 +124,8 @@ impl<B: I2c, R: InputPin, D: DelayNs> ZForce<B, R, D> {
         Ok(parse(message))
     }
 
-    /// Reads what waits, and discards it: the rest of a message of which a transfer that failed has read the beginning,
-    /// and reports that are older by now than the board takes them to be.
+    /// Reads and discards unread data: the rest of a message partly read by a failed transfer, and reports that are now
+    /// older than the board assumes.
     async fn discard_waiting(&mut self) -> Result<(), Error<B::Error>> {
         for _ in 0..DISCARDED_MAX {
             if !self.is_data_ready()? {
