@@ -1,8 +1,8 @@
-//! How a start ends after a panic or a fault, and what the next start learns of it.
+//! The end of a start after a panic or a fault, and its report in the next start.
 //!
-//! A board has one [`FaultRecord`], in memory that the start-up code does not clear, and one [`Ending`]. Its handlers
-//! of panics and faults call the methods of the ending, which set the output to zero, store the reason and reset. The
-//! next start takes the reason with [`LastReset::take`].
+//! A board has one [`FaultRecord`], in memory not cleared by the start-up code, and one [`Ending`]. Its panic and fault
+//! handlers call the methods of the ending, which set the output to zero, store the reason and reset. The next start
+//! takes the reason with [`LastReset::take`].
 
 use core::fmt::{Display, Write as _};
 use core::ops::Range;
@@ -15,7 +15,7 @@ use frixel_wire::hello::ResetCause;
 
 use crate::hardware::Processor;
 
-/// Bytes of the frame that a Cortex-M stores for an exception, without registers of the FPU.
+/// Bytes of the exception frame of a Cortex-M, without FPU registers.
 pub const FRAME_LEN: u32 = 32;
 
 /// The last reset.
@@ -29,8 +29,8 @@ pub struct LastReset {
 }
 
 impl LastReset {
-    /// Takes the stored fault from the record and marks the record as used. To be called once in each start. `cause` is
-    /// what the processor says.
+    /// Takes the stored fault from the record and marks the record as used. Call this once in each start. `cause` is
+    /// the cause reported by the processor.
     pub fn take(cause: ResetCause, record: &FaultRecord, text: &'static mut Text) -> Self {
         let (fault, text): (_, &[u8]) = match record.take(text) {
             Some((fault, detail, text)) => (Some((fault, detail)), text),
@@ -43,7 +43,7 @@ impl LastReset {
         Self { cause, fault, text }
     }
 
-    /// Logs it, in an image that logs.
+    /// Logs it, in an image with logging.
     #[cfg_attr(not(feature = "defmt"), allow(clippy::unused_self, reason = "nothing is logged"))]
     pub fn log(&self) {
         #[cfg(feature = "defmt")]
@@ -67,8 +67,8 @@ impl LastReset {
 pub struct Ending<P> {
     processor: P,
     record: &'static FaultRecord,
-    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps the messages of
-    /// panics that nobody reads, 200 bytes of the smallest image.
+    /// Faults since the start, at most 1. A number, because with an `AtomicBool` the compiler keeps unused panic
+    /// messages, 200 bytes of the smallest image.
     faults: AtomicU32,
 }
 
@@ -78,12 +78,12 @@ impl<P: Processor> Ending<P> {
         Self { processor, record, faults: AtomicU32::new(0) }
     }
 
-    /// Sets the output to zero, stores the fault with the text that `write_text` writes, and resets. A second fault
+    /// Sets the output to zero, stores the fault with the text written by `write_text`, and resets. A second fault
     /// meanwhile resets at once.
     pub fn end(&self, fault: Fault, detail: u32, write_text: &mut dyn FnMut(&mut Writer)) -> ! {
         self.processor.disable_interrupts();
         self.processor.zero_output_for_good();
-        // Not a swap, which a Cortex-M0+ does not have: a second fault between load and store would never return here.
+        // Not a swap, which a Cortex-M0+ lacks: a second fault between load and store would never return here.
         if self.faults.load(Ordering::Relaxed) == 0 {
             self.faults.store(1, Ordering::Relaxed);
             self.record.save(fault, detail, write_text);
@@ -91,7 +91,7 @@ impl<P: Processor> Ending<P> {
         self.processor.reset()
     }
 
-    /// Ends with a panic; the fault's detail is the line. Its message is not used, so the linker drops all messages.
+    /// Ends with a panic; the fault's detail is the line. Its message is unused, so the linker drops all messages.
     pub fn panic(&self, location: Option<&Location<'_>>) -> ! {
         let (file, line) = location.map_or(("", 0), |location| (location.file(), location.line()));
         self.end(Fault::Panic, line, &mut |text| {
@@ -114,11 +114,11 @@ impl<P: Processor> Ending<P> {
         })
     }
 
-    /// Ends with a hard fault, bus fault included, whose exception frame is at an address. `stack` are the addresses of
-    /// the stack, and `read` reads the registers, which it may do only if the frame lies in the stack.
+    /// Ends with a hard fault (including bus faults) whose exception frame is at an address. `stack` is the address
+    /// range of the stack; `read` reads the registers, and is called only if the frame lies in the stack.
     ///
-    /// The detail is the program counter; of a stack overflow, the address outside of the stack; of an invalid stack
-    /// pointer, its value.
+    /// The detail is the program counter. For a stack overflow, it is the address outside the stack; for an invalid
+    /// stack pointer, its value.
     pub fn hard_fault(&self, frame: u32, stack: Range<u32>, read: impl FnOnce() -> FaultRegisters) -> ! {
         self.processor.zero_output_for_good();
         if frame < stack.start {
@@ -136,11 +136,11 @@ impl<P: Processor> Ending<P> {
     }
 }
 
-/// What the processor says of a hard fault.
+/// The processor's information about a hard fault.
 pub struct FaultRegisters {
-    /// Where it happened.
+    /// Address of the faulting instruction.
     pub program_counter: u32,
-    /// Where the function there returns to.
+    /// Return address of the faulting function.
     pub link: u32,
     /// `CFSR` and `BFAR`: the kind of fault, and the address of the access; `None` on a processor without them.
     pub status: Option<(u32, u32)>,

@@ -1,4 +1,4 @@
-//! What a board implements: its parts, each behind a small trait, and [`Hardware`], which names them.
+//! The interface of a board: its parts, each behind a small trait, and [`Hardware`], which names them.
 //!
 //! | part | trait | who uses it |
 //! |---|---|---|
@@ -13,8 +13,8 @@
 //! | watchdog | [`Watchdog`] | main loop |
 //! | processor | [`Processor`] | faults |
 //!
-//! The tick is an interrupt that nothing may delay, so what it uses never waits, never logs, and takes no critical
-//! section that masks the tick.
+//! The tick is an interrupt that must not be delayed, so its parts never wait, never log, and take no critical section
+//! that masks the tick.
 
 use core::hint;
 
@@ -26,11 +26,11 @@ use frixel_drivers::ad5761r::Ad5761r;
 use frixel_drivers::amplifier::KickedEnable;
 use frixel_wire::dac_code::DacCode;
 
-/// The parts of a board. The type that implements it needs no value: it only names the parts.
+/// The parts of a board. The implementing type has no value; it only names the parts.
 pub trait Hardware: 'static {
     /// Ticks a second.
     const TICK_HZ: u32;
-    /// Samples of the arm switch per second, from which its driver counts the time of debouncing.
+    /// Samples of the arm switch per second, used by its driver to count the debounce time.
     const SWITCH_HZ: u32 = Self::TICK_HZ;
 
     /// The timer of the tick.
@@ -39,7 +39,7 @@ pub trait Hardware: 'static {
     type Frames: DacFrames;
     /// The main loop's half of the DAC.
     type Dac: Dac;
-    /// The enable of the amplifier. Where a wire can, disabling clears the DAC, too.
+    /// The enable of the amplifier. Where the wiring allows it, disabling also clears the DAC.
     type Enable: KickedEnable;
     /// The pin that is high while the amplifier is ready.
     type Ready: InputPin;
@@ -49,13 +49,13 @@ pub trait Hardware: 'static {
     type Switch: InputPin;
     /// The light that shows the state.
     type Light: OutputPin;
-    /// The serial port to the host. An error of it is not counted: bytes that are lost damage a frame, which is sent
-    /// again, and a port that fails for good is a host that is gone.
+    /// The serial port to the host. Its errors are not counted: lost bytes damage a frame, which is resent, and a
+    /// permanently failed port means that the host is gone.
     type Serial: Read + ReadReady + Write + WriteReady;
     /// The watchdog.
     type Watchdog: Watchdog;
 
-    /// Called again and again while the main loop waits for the tick, some periods. A board does nothing here; a test
+    /// Called repeatedly while the main loop waits for the tick, for some periods. A board does nothing here; a test
     /// without interrupts runs the tick.
     fn wait_for_tick() {
         hint::spin_loop();
@@ -72,29 +72,29 @@ pub trait Period {
     /// Cycles since the current period began, less than [`Self::PERIOD_CYCLES`].
     fn cycles(&self) -> u32;
 
-    /// Whether a period has begun since the last call; the call forgets it. The tick calls this first of all, which
-    /// acknowledges its own interrupt, and last of all, which says whether it has ended in time.
+    /// Whether a period has begun since the last call, which this resets. The tick calls this first, to acknowledge its
+    /// own interrupt, and last, to check whether it has ended in time.
     fn has_begun(&mut self) -> bool;
 }
 
 /// The tick's half of the DAC.
 pub trait DacFrames {
-    /// Begins to send a code, which the DAC puts out at the end of the period. If it is too late for that, or the
-    /// previous frame is still under way, this sends nothing. It never waits.
+    /// Begins to send a code, which the DAC outputs at the end of the period. Sends nothing if it is too late, or if
+    /// the previous frame is still under way. It never waits.
     fn send(&mut self, code: DacCode) -> Result<(), Late>;
 }
 
-/// A frame that was not sent, because the DAC could not put it out at the end of the period.
+/// A frame that was not sent, because the DAC could not output it at the end of the period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late;
 
-/// The main loop's half of the DAC. It may wait. The tick sends no frame meanwhile ([`crate::tick::TickShared::bus`]).
+/// The main loop's half of the DAC. It may wait. The tick sends no frames meanwhile ([`crate::tick::TickShared::bus`]).
 pub trait Dac {
-    /// Configures the DAC, sets it to zero, and reads the configuration back. Returns the detail of fault `Dac` if it
-    /// does not hold it.
+    /// Configures the DAC, sets it to zero, and reads the configuration back. Returns the detail of fault `Dac` if the
+    /// configuration is wrong.
     fn prepare(&mut self) -> Result<(), u32>;
 
-    /// Reads the configuration back. Returns the detail of fault `Dac` if the DAC does not hold it any more.
+    /// Reads the configuration back. Returns the detail of fault `Dac` if the configuration is wrong.
     fn check(&mut self) -> Result<(), u32>;
 }
 
@@ -115,24 +115,24 @@ pub trait Monitor {
     fn monitor_v(&mut self) -> f32;
 }
 
-/// The watchdog, which resets the processor unless it is fed. It runs.
+/// The running watchdog, which resets the processor unless it is fed.
 pub trait Watchdog {
-    /// Feeds it for another tenth of a second or so. The main loop calls this only after a new tick, so that either of
-    /// the two resets the board by standing still.
+    /// Feeds it for about another tenth of a second. The main loop calls this only after a new tick, so that the board
+    /// is reset if either of them stops.
     fn feed(&mut self);
 
-    /// Sets whether the watchdog stops while a debugger halts the processor: only while the board is disarmed. Called
-    /// with every new status, and before the board arms.
+    /// Sets whether the watchdog stops while a debugger halts the processor, which is allowed only while the board is
+    /// disarmed. Called with every new status, and before the board arms.
     fn let_debugger_stop_it(&mut self, may_stop: bool);
 }
 
-/// What a fault needs of the processor, in any state that it is found in.
+/// The processor operations needed by a fault, available in any state.
 pub trait Processor {
     /// Disables all interrupts until the reset.
     fn disable_interrupts(&self);
 
-    /// Sets the output to zero until the reset: disables the amplifier, and then the DAC, in the order that
-    /// [`zero_output`](frixel_drivers::ad5761r::zero_output) explains.
+    /// Sets the output to zero until the reset: disables the amplifier, and then the DAC, in the order explained at
+    /// [`zero_output`](frixel_drivers::ad5761r::zero_output).
     fn zero_output_for_good(&self);
 
     /// Resets the processor.

@@ -1,4 +1,4 @@
-//! A host on the board, which plays a scene to session and ticker: for programs that have no host at their port.
+//! A host on the board, which plays a scene on session and ticker, for programs without a host at their port.
 
 use core::fmt;
 
@@ -10,13 +10,13 @@ use frixel_wire::hello::notice;
 use frixel_wire::message::{Command, Refusal, Request};
 use frixel_wire::payload;
 
-/// Host timeout of the scenes that this host plays, s.
+/// Host timeout of this host's scenes, s.
 pub(crate) const HOST_TIMEOUT_S: f32 = 0.25;
-/// Seconds to arm, and to disarm.
+/// Time limit for arming and disarming, s.
 const ANSWER_S: f32 = 0.5;
-/// Seconds between two pings: a fifth of the host timeout.
+/// Ping period, s: a fifth of the host timeout.
 const PING_S: f32 = HOST_TIMEOUT_S / 5.0;
-/// The finger moves along x, because the output is zero at standstill (below 2 mm/s).
+/// Speed of the finger along x, m/s. It moves because the output is zero at standstill (below 2 mm/s).
 const FINGER_SPEED_M_PER_S: f32 = 0.02;
 const FINGER_Y_M: f32 = 0.05;
 
@@ -25,7 +25,7 @@ const FINGER_Y_M: f32 = 0.05;
 pub enum DriveError {
     /// The session has refused the scene.
     Refused(Refusal),
-    /// The board was not armed, or not disarmed, in time; it was in this state.
+    /// The board was not armed, or not disarmed, in time; this is its state.
     State(State),
     /// The supervisor has latched a fault.
     Fault(Fault, u32),
@@ -45,16 +45,16 @@ impl fmt::Display for DriveError {
 }
 
 /// Plays one scene for a time under a moving finger, and disarms the board again. The board's main loop calls
-/// [`LocalHost::step`] in every round, beside the session and with the tick running.
+/// [`LocalHost::step`] in every round, together with the session and with the tick running.
 #[derive(Debug)]
 pub(crate) struct LocalHost {
     tick_hz: f32,
     touch_period_ticks: u32,
     play_ticks: u32,
-    /// The board refuses to arm.
+    /// Whether the board refuses to arm.
     has_wrong_option_bytes: bool,
     phase: Phase,
-    /// Tick at which the phase has begun.
+    /// First tick of the phase.
     since_tick: u32,
     pinged_at_tick: u32,
     touched_at_tick: u32,
@@ -70,19 +70,19 @@ enum Phase {
     Disarming,
 }
 
-/// How far a play has come.
+/// Progress of a play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Progress {
     /// The board is being armed, or disarmed.
     Waiting,
-    /// The scene has played for so many ticks.
+    /// The scene has played for this number of ticks.
     Playing(u32),
     /// The board is disarmed again.
     Done,
 }
 
 impl LocalHost {
-    /// A host that will play for `play_s` on a board that has been disarmed.
+    /// A host that plays for `play_s` on a disarmed board.
     pub(crate) fn new(play_s: f32, board: &frixel_control::Board) -> Self {
         let tick_hz = board.tick_hz as f32;
         Self {
@@ -104,8 +104,8 @@ impl LocalHost {
         self.play_ticks = 0;
     }
 
-    /// One round: tells the session what a host would. The caller discards what the session sends, so that it goes on
-    /// listening.
+    /// One round: sends the session a host's messages. The caller discards the session's output, so that the session
+    /// keeps listening.
     pub(crate) fn step(
         &mut self,
         scene: &[u8],

@@ -4,15 +4,14 @@ use frixel_layers::{HEADER_LEN, Header, Leader, RECORD_LEN, Record, Waveform};
 
 use crate::local_host::HOST_TIMEOUT_S;
 
-/// Slow enough that a wrong gain shows before the whole voltage is there.
+/// Slew limit, slow enough that a wrong gain shows before the full voltage is reached, V/s.
 const SLEW_V_PER_S: f32 = 1000.0;
-/// Frequency of the square wave: the lowest that a scene may have, so that most of a half period is settled.
+/// Frequency of the square wave, Hz: the lowest that a scene may have, so that most of a half period is settled.
 pub(crate) const CARRIER_HZ: f32 = 125.0;
-/// Electric friction, N, that the finger of [`header`] reaches at no voltage, so that the voltage is always at the
-/// scene's limit.
+/// Electric friction, N, beyond the reach of [`header`]'s finger, so that the voltage is always at the scene's limit.
 pub(crate) const OUT_OF_REACH_N: f32 = 100.0;
 
-/// Bytes of a scene with so many layers.
+/// Bytes of a scene with `layers` layers.
 pub(crate) const fn scene_len(layers: usize) -> usize {
     HEADER_LEN + layers * RECORD_LEN
 }

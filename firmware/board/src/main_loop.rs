@@ -9,9 +9,9 @@ use frixel_wire::fault::{Fault, State};
 use crate::hardware::{Dac, Hardware, Watchdog};
 use crate::tick::TickShared;
 
-/// All that runs in the main loop.
+/// Everything that runs in the main loop.
 pub struct MainLoop<H: Hardware> {
-    /// What the tick shares with it.
+    /// Data shared with the tick.
     pub shared: &'static TickShared,
     /// Its ends of the queues between it and the tick.
     pub queues: SessionEnds,
@@ -19,18 +19,18 @@ pub struct MainLoop<H: Hardware> {
     pub session: &'static mut Session<'static>,
     /// The last status from the tick.
     pub status: Status,
-    /// The serial link to the host; `None` when the host is on the board, as in bring-up.
+    /// The serial link to the host; `None` if the host is on the board, as in bring-up.
     pub serial: Option<SerialLink<H::Serial>>,
-    /// The DAC, while its frames rest.
+    /// The DAC, for use while its frames are paused.
     pub dac: H::Dac,
     /// The light that shows the state.
     pub light: StateLight<H::Light>,
-    /// Resets the processor when this loop or the tick stops.
+    /// Resets the processor if this loop or the tick stops.
     pub watchdog: H::Watchdog,
 }
 
 impl<H: Hardware> MainLoop<H> {
-    /// Runs the loop for ever, with the board's own touch source, which returns a report when it has one.
+    /// Runs the loop for ever, with the board's own touch source, which returns a report if it has one.
     #[inline]
     pub fn run(mut self, mut next_touch: impl FnMut() -> Option<Touch>) -> ! {
         loop {
@@ -38,13 +38,13 @@ impl<H: Hardware> MainLoop<H> {
         }
     }
 
-    /// Runs the loop once. To be called again and again. `touch` is a report of the board's own touch source.
+    /// Runs the loop once; call this repeatedly. `touch` is a report of the board's own touch source.
     #[inline]
     pub fn turn(&mut self, touch: Option<Touch>) {
         self.follow_status();
         if let Some(serial) = &mut self.serial {
             let (session, status) = (&mut self.session, &self.status);
-            // A port that fails is a host that says nothing: its timeout acts.
+            // A failing port is a silent host, whose timeout acts.
             let _ = serial.receive(|bytes| session.receive(bytes, status));
         }
         if let Some(touch) = touch {
@@ -58,18 +58,18 @@ impl<H: Hardware> MainLoop<H> {
         self.light.show(self.status.telemetry.state, self.shared.count());
     }
 
-    /// Takes a new status, if there is one. Only then it feeds the watchdog: a tick that stands still sends none.
+    /// Takes a new status, if there is one, and only then feeds the watchdog: a stopped tick sends none.
     fn follow_status(&mut self) {
         let Some(status) = self.queues.next_status() else { return };
         log_change(&self.status, &status);
         self.status = status;
-        // An order to arm may still be queued behind this status.
+        // An order to arm may still be queued after this status.
         let is_disarmed = [self.status.telemetry.state, self.session.state()] == [State::Disarmed; 2];
         self.watchdog.let_debugger_stop_it(is_disarmed);
         self.watchdog.feed();
     }
 
-    /// Passes orders to the tick, and takes back the coefficients that the tick no longer uses.
+    /// Passes orders to the tick, and takes back unused coefficients.
     fn exchange(&mut self) {
         let Self { queues, session, dac, watchdog, shared, .. } = self;
         queues.exchange(session, |order| {
@@ -82,12 +82,12 @@ impl<H: Hardware> MainLoop<H> {
 }
 
 /// Checks the DAC before an order reaches the ticker: configures it and reads it back before [`Order::Arm`], and reads
-/// it back before [`Order::Play`], so that a DAC whose supply dipped while the board was armed is not driven. If the
-/// DAC does not hold its configuration, this raises [`Fault::Dac`], which the order does not clear.
+/// it back before [`Order::Play`], so that a DAC whose supply dipped while the board was armed is not driven. On a
+/// wrong configuration, this raises [`Fault::Dac`], which the order does not clear.
 ///
-/// The tick sends no frames meanwhile; the output is zero and the amplifier disabled. On the NUCLEO it takes some 0.2
-/// ms, up to five frames and the hand-over; if a stop is still under way, it begins once the output is zero. It waits
-/// for the tick without limit: without ticks, the watchdog resets the board.
+/// The tick sends no frames meanwhile; the output is zero and the amplifier disabled. On the NUCLEO it takes about 0.2
+/// ms, up to five frames and the handover; if a stop is in progress, it begins once the output is zero. It waits for
+/// the tick without limit: without ticks, the watchdog resets the board.
 fn check_dac_before<H: Hardware>(order: &Order, dac: &mut H::Dac, shared: &TickShared) {
     let configures = match order {
         Order::Arm => true,

@@ -27,7 +27,7 @@ pub struct Made {
     pub tick_ends: TickEnds,
 }
 
-/// Room for what is too large for the stack. A static of a board's `main`, which is the only one to have a reference.
+/// Memory that is too large for the stack. It is a static in a board's `main`, which holds the only reference.
 pub struct Memory {
     first: MaybeUninit<Active>,
     second: MaybeUninit<Active>,
@@ -47,7 +47,7 @@ impl Memory {
         }
     }
 
-    /// Makes the tick, the session and the queues between them, of which each takes its ends.
+    /// Creates the tick, the session and the queues between them, with the ends of each.
     #[inline(never)]
     pub fn make(&'static mut self, board: Board) -> Made {
         #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
@@ -63,8 +63,8 @@ impl Memory {
     }
 }
 
-// Large values are made on the stack, so that no copy of them lies in flash. Each has a function of its own, so that
-// the stack holds only one at a time.
+// Large values are created on the stack, so that flash holds no copy of them. Each has its own function, so that the
+// stack holds only one at a time.
 
 #[inline(never)]
 fn coefficients(place: &'static mut MaybeUninit<Active>) -> &'static mut Active {

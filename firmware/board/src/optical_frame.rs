@@ -1,7 +1,7 @@
-//! The optical touch frame, a Neonode zForce module on I2C, as the touch source of the main loop: a future reads one
-//! report after the other, and each turn of the main loop polls it.
+//! The optical touch frame, a Neonode zForce module on I2C, as the main loop's touch source: a future reads one report
+//! after the other, and each turn of the main loop polls it.
 //!
-//! The module lies along the top edge of the screen, with its corner at the screen's corner.
+//! The module is mounted along the top edge of the screen, with its corner at the screen's corner.
 
 use core::cell::Cell;
 use core::future::poll_fn;
@@ -22,13 +22,13 @@ use crate::tick::TickShared;
 
 /// Time limit of a transfer, ms: the longest message takes 2.9 ms on the bus, and the module may stretch the clock.
 const TRANSFER_MS: u32 = 6;
-/// Time limit of the end of a byte, after which the peripheral has stopped, ms.
+/// Time limit for ending a byte, after which the peripheral has stopped, ms.
 const STOP_MS: u32 = 1;
-/// Age of a place when it is read, ms: two scans at 200 Hz, one that sees the finger and one that is reported. Must be
-/// measured at bring-up.
+/// Age of a place when it is read, ms: two scans at 200 Hz, one that detects the finger and one that is reported. Must
+/// be measured at bring-up.
 const AGE_MS: u32 = 10;
 
-/// Runs the main loop for ever with the frame on `port`, whose line for data that is ready is `data_ready`.
+/// Runs the main loop for ever with the frame on `port`, whose data-ready line is `data_ready`.
 pub fn run<H: Hardware, P: I2cPort>(main_loop: MainLoop<H>, port: P, data_ready: impl InputPin) -> ! {
     let time = TickTime { shared: main_loop.shared, tick_hz: H::TICK_HZ };
     let reports = Reports::new(None);
@@ -46,7 +46,7 @@ fn log(error: zforce::Error<BusError>) {
 #[cfg(not(feature = "defmt"))]
 fn log(_: zforce::Error<BusError>) {}
 
-/// The last report that the frame has read, until it is taken.
+/// The last report read from the frame, until it is taken.
 pub type Reports = Cell<Option<Touch>>;
 
 /// The frame as a touch source: a future that reads reports, and the cell in which it stores them.
@@ -56,19 +56,19 @@ pub struct OpticalFrame<'a> {
 }
 
 impl<'a> OpticalFrame<'a> {
-    /// A source from a future of [`read`] and the cell that was passed to it.
+    /// A source from a future of [`read`] and the cell passed to it.
     pub fn new(reading: Pin<&'a mut dyn Future<Output = ()>>, reports: &'a Reports) -> Self {
         Self { reading, reports }
     }
 
-    /// Continues to read without waiting, and returns a report when one is complete. To be called repeatedly.
+    /// Continues to read without waiting, and returns a report when one is complete. Call this repeatedly.
     pub fn next_touch(&mut self) -> Option<Touch> {
         let _ = poll_once(self.reading.as_mut());
         self.reports.take()
     }
 }
 
-/// Stores one report after the other in `reports`, each as old as `age_ticks` when it is read, and passes errors to
+/// Stores one report after the other in `reports`, each with the age `age_ticks` when read, and passes errors to
 /// `on_error`. Never returns.
 pub async fn read<B: I2c, R: InputPin, D: DelayNs>(
     mut frame: ZForce<B, R, D>,
@@ -82,14 +82,14 @@ pub async fn read<B: I2c, R: InputPin, D: DelayNs>(
             Ok(zforce::Touch::Up) => reports.set(Some(Touch::Up)),
             Err(error) => on_error(error),
         }
-        // Waits until the report is taken before it reads the next.
+        // Wait until the report is taken before reading the next.
         while reports.get().is_some() {
             yield_now().await;
         }
     }
 }
 
-/// Time in ticks. As a delay, it is as long as asked for, and up to two ticks longer.
+/// Time in ticks. As a delay, it lasts up to two ticks longer than requested.
 #[derive(Clone, Copy)]
 pub struct TickTime {
     /// The counter of ticks.
@@ -124,7 +124,7 @@ impl DelayNs for TickTime {
     }
 }
 
-/// An I2C peripheral that is the only controller on its bus, at 400 kHz. No call of it waits.
+/// An I2C peripheral that is the only controller on its bus, at 400 kHz. None of its methods waits.
 pub trait I2cPort {
     /// SCL, as a pin that software pulls low or releases.
     type Clock: OutputPin;
@@ -140,7 +140,8 @@ pub trait I2cPort {
     /// Gives SCL back to the peripheral.
     fn give_clock(&mut self);
 
-    /// Asks a peripheral that must be disabled between transfers to stop. Called before and after each transfer.
+    /// Requests a stop from a peripheral that must be disabled between transfers. Called before and after each
+    /// transfer.
     fn stop(&mut self) {}
 
     /// Whether the peripheral has stopped.
@@ -153,10 +154,10 @@ pub trait I2cPort {
     fn begin(&mut self, address: u8, operation: &Operation<'_>);
 
     /// Continues the transfer, and returns its result once it has ended. All bytes that were read are in the operation
-    /// then.
+    /// Continues the transfer, and returns its result once it has ended, with all read bytes in the operation.
     fn poll(&mut self, operation: &mut Operation<'_>) -> Poll<Result<(), BusError>>;
 
-    /// Gives up a transfer that has failed or takes too long: releases the bus.
+    /// Aborts a failed or overlong transfer, and releases the bus.
     fn give_up(&mut self) {}
 }
 
@@ -171,7 +172,7 @@ pub enum BusError {
     /// The transfer took longer than 6 ms.
     Timeout,
     /// SDA is low before the transfer, and nine clocks have not freed it, or the peripheral waits for the last transfer
-    /// to end: a short, a module without supply, or one that holds SCL.
+    /// to end: a short, an unpowered module, or one that holds SCL.
     BusHeld,
     /// A transaction of several transfers, or of none or more than 127 bytes, which the module never needs.
     Unsupported,
@@ -187,8 +188,8 @@ impl i2c::Error for BusError {
     }
 }
 
-/// The bus of the frame, over a board's peripheral. A transaction is one transfer within a time limit. Before it, the
-/// bus is cleared if a transfer was cut off.
+/// The bus of the frame, over a board's peripheral. A transaction is one transfer within a time limit. An interrupted
+/// transfer is cleared from the bus before the next.
 pub struct FrameBus<P> {
     port: P,
     time: TickTime,
@@ -200,7 +201,7 @@ impl<P: I2cPort> FrameBus<P> {
         Self { port, time }
     }
 
-    /// Clears the bus from a transfer that a reset or a time-out has cut off, and returns whether SDA is free.
+    /// Clears a transfer interrupted by a reset or a timeout from the bus, and returns whether SDA is free.
     async fn clear(&mut self) -> bool {
         let mut clock = self.port.take_clock();
         let is_free = clear_bus(&mut clock, &mut self.port.data(), &mut self.time).await;

@@ -1,4 +1,4 @@
-//! The serial port to the host, over a UART whose received bytes DMA or an interrupt stores in a ring.
+//! The serial port to the host, over a UART whose received bytes are stored in a ring by DMA or an interrupt.
 
 use core::convert::Infallible;
 use core::sync::atomic::AtomicU8;
@@ -6,9 +6,9 @@ use core::sync::atomic::AtomicU8;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::ring::RingReader;
 
-/// Number of bytes that the host may have under way.
+/// Largest number of bytes that the host may have in flight.
 pub const RECEIVE_WINDOW: usize = 4096;
-/// Length of the ring: the host's credit, and room for a hello and some noise, which need no credit.
+/// Length of the ring: the host's credit, plus room for a hello and some noise, which need no credit.
 pub const RING_LEN: usize = RECEIVE_WINDOW + 512;
 
 /// A UART that runs.
@@ -16,14 +16,14 @@ pub trait Uart {
     /// The ring of received bytes.
     fn ring(&self) -> &'static [AtomicU8; RING_LEN];
 
-    /// Bytes until the ring begins anew. Clears what keeps the UART from receiving, such as the flag of an overrun: the
-    /// bytes that were lost damage frames, which the host sends again.
+    /// Bytes until the ring wraps around. Clears conditions that keep the UART from receiving, such as an overrun flag;
+    /// the lost bytes damage frames, which the host resends.
     fn remaining(&mut self) -> usize;
 
-    /// Whether [`Self::send`] takes a byte.
+    /// Whether [`Self::send`] accepts a byte.
     fn takes_bytes(&self) -> bool;
 
-    /// Begins to send bytes and returns how many were taken, without waiting.
+    /// Begins to send bytes and returns the number accepted, without waiting.
     fn send(&mut self, bytes: &[u8]) -> usize;
 
     /// Whether everything has been sent.
@@ -66,7 +66,7 @@ impl<U: Uart> WriteReady for SerialPort<U> {
 }
 
 impl<U: Uart> Write for SerialPort<U> {
-    /// Begins to send, once the UART takes a byte.
+    /// Begins to send once the UART accepts a byte.
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
         if bytes.is_empty() {
             return Ok(0);

@@ -1,13 +1,13 @@
-//! The start of a board, whatever its processor: the description that its hello gives, and the assembly of tick and main
-//! loop from the board's parts.
+//! The start of a board with any processor: the description in its hello, and the assembly of tick and main loop from
+//! the board's parts.
 //!
-//! A board starts in this order, which its `main` shows:
+//! A board starts in this order, as shown by its `main`:
 //!
 //! 1. the output is set to zero, before anything else;
 //! 2. the stack is guarded, and the cause of the last reset is read and logged;
 //! 3. the clocks, and the enable behind its one-shot;
-//! 4. [`prepare`] configures the DAC. Until then, it has the settings of the last start, so this comes before the search
-//!    of the flash, which takes up to 0.2 s;
+//! 4. [`prepare`] configures the DAC, which has the settings of the last start until then. It therefore precedes the
+//!   search of the flash, which takes up to 0.2 s;
 //! 5. [`describe`] reads the stored limits;
 //! 6. [`Parts::start`] starts the tick, and the watchdog last, because only the main loop feeds it.
 
@@ -24,18 +24,19 @@ use crate::main_loop::MainLoop;
 use crate::memory::Made;
 use crate::tick::{Tick, TickShared};
 
-/// Where a board stores its limits: the first pages of the flash for stores.
+/// Location of the stored limits: the first pages of the flash for stores.
 pub const LIMITS_SLOT: Slot = Slot { first_page: 0 };
 
-/// Configures the DAC and reads it back. A missing DAC is not a fault yet: it is checked again before the board arms.
+/// Configures the DAC and reads it back. A missing DAC is not a fault yet, since it is checked again before the board
+/// arms.
 pub fn prepare(dac: &mut impl Dac) {
     if let Err(detail) = dac.prepare() {
         log_dac(detail);
     }
 }
 
-/// The description of a board that starts: `built_in`, with the limits that `flash` holds, the notices of both, and what
-/// led to the last reset.
+/// The description of a starting board: `built_in` with the limits stored in `flash`, the notices of both, and the
+/// cause of the last reset.
 #[inline]
 pub fn describe<F: Flash>(
     built_in: Board,
@@ -74,13 +75,13 @@ pub struct Parts<H: Hardware> {
     pub switch: H::Switch,
     /// The light that shows the state.
     pub light: H::Light,
-    /// The serial port to the host; `None` when the host is on the board, as in bring-up.
+    /// The serial port to the host; `None` if the host is on the board, as in bring-up.
     pub serial: Option<H::Serial>,
 }
 
 impl<H: Hardware> Parts<H> {
-    /// Makes tick and main loop. Gives the tick to `start_tick`, which starts its interrupt, and starts the watchdog
-    /// after it.
+    /// Creates tick and main loop. Passes the tick to `start_tick`, which starts its interrupt, and then starts the
+    /// watchdog.
     #[inline]
     pub fn start(
         self,

@@ -1,4 +1,4 @@
-//! The person's terminal on the serial port, which is thereby tested in both directions.
+//! The person's terminal on the serial port; using it tests the port in both directions.
 
 use core::fmt::{Arguments, Write as _};
 
@@ -6,10 +6,10 @@ use embedded_io::{Read, ReadReady, Write, WriteReady};
 
 use crate::bring_up::{Line, LineReader, Typed};
 
-/// Longest text that is shown at once, in bytes.
+/// Longest text shown at once, in bytes.
 const TEXT_MAX_LEN: usize = 384;
 
-/// The terminal. What it shows goes to the debug probe, too. On a port that fails, lines are lost in both directions.
+/// The terminal. Its output also goes to the debug probe. On a failing port, lines are lost in both directions.
 pub struct Terminal<P> {
     serial: P,
     reader: LineReader,
@@ -21,10 +21,10 @@ impl<P: Read + ReadReady + Write + WriteReady> Terminal<P> {
         Self { serial, reader: LineReader::default() }
     }
 
-    /// Shows a line. It waits until the port has taken it, some milliseconds.
+    /// Shows a line. Waits some milliseconds until the port has accepted it.
     pub fn say(&mut self, text: Arguments<'_>) {
         let mut line = heapless::String::<TEXT_MAX_LEN>::new();
-        // A text that is too long is cut.
+        // A text that is too long is truncated.
         let _ = line.write_fmt(text);
         #[cfg(feature = "defmt")]
         defmt::println!("{=str}", line.as_str());
@@ -32,13 +32,13 @@ impl<P: Read + ReadReady + Write + WriteReady> Terminal<P> {
         self.write(b"\r\n");
     }
 
-    /// Forgets what was typed before it was asked for.
+    /// Discards earlier input.
     pub fn forget(&mut self) {
         while self.next_byte().is_some() {}
         self.reader.clear();
     }
 
-    /// Reads what has been typed, without waiting. Returns the line when it has ended.
+    /// Reads typed characters without waiting. Returns the line when it has ended.
     pub fn line(&mut self) -> Option<Line> {
         while let Some(byte) = self.next_byte() {
             match self.reader.push(byte) {
@@ -62,7 +62,7 @@ impl<P: Read + ReadReady + Write + WriteReady> Terminal<P> {
         }
     }
 
-    /// Begins to send bytes unless others are still under way, and returns the number of those that were taken.
+    /// Begins to send bytes unless others are still under way, and returns the number accepted.
     pub fn send(&mut self, bytes: &[u8]) -> usize {
         match self.serial.write_ready() {
             Ok(true) => self.serial.write(bytes).unwrap_or(0),

@@ -1,5 +1,5 @@
-//! The tick: what the timer's interrupt does, `tick_hz` times a second, above every other interrupt and every critical
-//! section. It never logs and never waits.
+//! The tick: the timer's interrupt at `tick_hz`, above every other interrupt and every critical section. It never logs
+//! and never waits.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -14,16 +14,15 @@ use frixel_wire::fault::Fault;
 
 use crate::hardware::{DacFrames, Hardware, Monitor, Period};
 
-/// What the tick shares with the rest of the program. A board has one, in a static.
+/// Data shared between the tick and the rest of the program. A board has one, in a static.
 pub struct TickShared {
     count: AtomicU32,
-    /// A fault that was found outside of the tick: its number above [`FAULT_SHIFT`], its detail below; zero without a
-    /// fault.
+    /// A fault found outside the tick: its number above [`FAULT_SHIFT`], its detail below; zero without a fault.
     fault: AtomicU32,
     /// Arbitrates the DAC's bus between the tick and the main loop, which checks the DAC before the board arms and
     /// before it plays.
     pub bus: BusHandover,
-    /// How long the ticks take, for telemetry.
+    /// Durations of the ticks, for telemetry.
     #[cfg(feature = "telemetry")]
     pub meter: TickMeter,
 }
@@ -50,17 +49,15 @@ impl TickShared {
         self.count.load(Ordering::Relaxed)
     }
 
-    /// Raises a fault at the next tick. `detail` has 24 bits. A fault that is raised before that tick replaces this
-    /// one.
+    /// Raises a fault at the next tick, and replaces one already raised for it. `detail` has 24 bits.
     pub fn raise(&self, fault: Fault, detail: u32) {
         self.fault.store(u32::from(fault.number()) << FAULT_SHIFT | detail & DETAIL_MASK, Ordering::Release);
     }
 }
 
-/// Everything that only the interrupt uses. The interrupt of the board's timer calls [`Tick::run`], and does nothing
-/// else.
+/// Data used only by the interrupt. The interrupt of the board's timer calls [`Tick::run`], and does nothing else.
 pub struct Tick<H: Hardware> {
-    /// What it shares with the rest of the program.
+    /// Data shared with the rest of the program.
     pub shared: &'static TickShared,
     /// Computes the voltage from touch and scene.
     pub ticker: Ticker<'static>,
@@ -74,7 +71,7 @@ pub struct Tick<H: Hardware> {
     pub amplifier: Amplifier<H::Enable, H::Ready>,
     /// The amplifier's monitor.
     pub monitor: H::Monitor,
-    /// The switch that a person holds.
+    /// The switch held by a person.
     pub arm_switch: ArmSwitch<H::Switch>,
 }
 
@@ -82,13 +79,13 @@ impl<H: Hardware> Tick<H> {
     /// Runs one tick.
     ///
     /// Deadline: the frame for the DAC must begin within [`Period::DEADLINE_CYCLES`] of the period. A tick that misses
-    /// it sets the output to zero and raises [`Fault::Deadline`], and so does a tick that has not ended when the next
-    /// period begins. The fault's detail is the time taken, in cycles.
+    /// the deadline, or has not ended when the next period begins, sets the output to zero and raises
+    /// [`Fault::Deadline`]. The fault's detail is the time taken, in cycles.
     #[inline]
     pub fn run(&mut self) {
         // Acknowledges the interrupt.
         let _ = self.period.has_begun();
-        // Before anything whose time varies: the DAC has put out a code just now, which soon moves the monitor.
+        // Before anything with a variable duration: the DAC has just output a code, which soon moves the monitor.
         let sense = self.sense();
         let shared = self.shared;
         shared.count.store(shared.count().wrapping_add(1), Ordering::Relaxed);
@@ -114,7 +111,7 @@ impl<H: Hardware> Tick<H> {
         let cycles = if has_ended_in_time { cycles } else { H::Period::PERIOD_CYCLES + self.period.cycles() };
         #[cfg(feature = "telemetry")]
         shared.meter.record(cycles);
-        // A tick that was too late for the DAC and has not ended in time either is one missed deadline.
+        // A tick that was too late for the DAC and has also not ended in time is one missed deadline.
         if !has_ended_in_time && !is_late {
             self.late(cycles);
         }

@@ -10,9 +10,9 @@ use super::{Bench, Check, Stop};
 /// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
-/// Smallest and largest ratio of each half of the series resistance, as an ohmmeter of 0.5 % shows it, to the half that
-/// is built in. The touch bound rests on the sum, and its margin counts a sum that is 1.5 % small. Nothing measures it
-/// later: half of it, with a resistor that is shorted, would let twice the current through a person.
+/// Smallest and largest ratio of each half of the series resistance, measured by an ohmmeter of 0.5 %, to the built-in
+/// half. The touch bound depends on the sum, and its margin includes a sum that is 1.5 % low. It is not measured later:
+/// a shorted resistor would halve the sum and let twice the current through a person.
 const SERIES_RATIO: (f32, f32) = (0.99, 1.02);
 
 /// Resistance between the two sides of the switch's second pole while it is closed, Ohm.
@@ -52,7 +52,7 @@ pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) ->
     check(bench, Check::Ticks)
 }
 
-/// Has the person measure the rails, which may still be charged, before a hand comes near them.
+/// Asks the person to measure the rails, which may still be charged, before touching anything near them.
 pub(super) fn check_rails(bench: &mut impl Bench) {
     confirm(
         bench,
@@ -64,7 +64,7 @@ pub(super) fn check_rails(bench: &mut impl Bench) {
     );
 }
 
-/// Checks that the common has no connection to protective earth. To be asked while no oscilloscope is connected.
+/// Checks that the common has no connection to protective earth. Call it while no oscilloscope is connected.
 pub(super) fn check_isolation(bench: &mut impl Bench) -> Result<(), Stop> {
     ask(
         bench,
@@ -74,8 +74,9 @@ pub(super) fn check_isolation(bench: &mut impl Bench) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The amplifier's enable is plugged behind the switch's second pole: it was unplugged for the step before. In front of
-/// the pole, everything would work as well, and the switch would no longer stop the amplifier by itself.
+/// Checks that the amplifier's enable, which was unplugged for the previous step, is connected after the switch's
+/// second pole. Before the pole, everything would work as well, but the switch would no longer stop the amplifier by
+/// itself.
 fn check_plug(bench: &mut impl Bench) -> Result<(), Stop> {
     ask(bench, "released: ENABLE_LOGIC to ENABLE at the amplifier's own terminal, kOhm", PULL_DOWN_KOHM)?;
     await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;

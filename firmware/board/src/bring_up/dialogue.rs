@@ -1,10 +1,10 @@
-//! The questions that the script asks the person, and how it judges the answers.
+//! The questions of the script, and the checks of their answers.
 
 use core::fmt;
 
 use super::{Bench, Inputs, LINE_MAX_LEN, Stop, TestOutput};
 
-/// Says what to do until the person types `word`.
+/// Shows an instruction until the person types `word`.
 pub(super) fn confirm(bench: &mut impl Bench, what: fmt::Arguments<'_>, word: &str) {
     loop {
         bench.say(format_args!("{what} Then type: {word}"));
@@ -18,7 +18,7 @@ pub(super) fn ask(bench: &mut impl Bench, what: &'static str, expected: (f32, f3
     ask_while(bench, TestOutput::Zero, what, expected)
 }
 
-/// Asks for a number until the person types one, while the board puts out `output`. A number out of its range ends
+/// Asks for a number until the person types one, while the board outputs `output`. A number out of its range ends
 /// bring-up; other text does not.
 pub(super) fn ask_while(
     bench: &mut impl Bench,
@@ -53,8 +53,8 @@ pub(super) fn expect_inputs(bench: &mut impl Bench, expected: Inputs, after: &'s
     if found == expected { Ok(()) } else { Err(Stop::Inputs { after, expected, found }) }
 }
 
-/// Waits until the inputs change from `from` to `to`, which differ in one input. A change of the other one ends
-/// bring-up; a contact that bounces does not.
+/// Waits until the inputs change from `from` to `to`, which differ in one input. A change of the other input ends
+/// bring-up; a bouncing contact does not.
 pub(super) fn await_inputs(bench: &mut impl Bench, from: Inputs, to: Inputs, what: &'static str) -> Result<(), Stop> {
     bench.say(format_args!("{what}."));
     loop {

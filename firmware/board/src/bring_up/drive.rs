@@ -1,4 +1,4 @@
-//! A square wave of a voltage, driven through the firmware.
+//! A square-wave voltage, driven through the firmware.
 
 use frixel_control::Status;
 use frixel_layers::{Blend, Constant, Layer, Record, Region};
@@ -7,33 +7,33 @@ use frixel_session::Session;
 use crate::local_host::{DriveError, LocalHost, Progress};
 use crate::local_scene::{CARRIER_HZ, OUT_OF_REACH_N, header, scene, scene_len};
 
-/// Seconds that the output is driven: time to read a voltage from an oscilloscope that was set up before.
+/// Duration of the output, s: time to read a voltage from a prepared oscilloscope.
 const DRIVEN_S: f32 = 3.0;
-/// Seconds until the voltage is measured. The envelope has then reached the voltage, at 1,000 V/s, up to 400 V.
+/// Settling time before the measurement, s. At 1,000 V/s, the envelope then reaches up to 400 V.
 const SETTLING_S: f32 = 0.5;
 /// Part of a half period, counted from the tick of its edge, in which the monitor is read: 1.2 to 3.2 ms of 4 ms. The
-/// edges are tens of microseconds long, and the main loop sees them a few ticks late.
+/// edges last tens of microseconds, and the main loop sees them a few ticks late.
 const READ_FROM: f32 = 0.3;
 const READ_UNTIL: f32 = 0.8;
-/// Seconds after the end until the monitor is read once more, and for which it is read. The output must be zero 1 ms
+/// Time from the end until the monitor is read again, and duration of that reading, s. The output must be zero 1 ms
 /// after the end.
 const REST_S: f32 = 0.05;
 
-/// The driven voltage, and the voltage that the amplifier's monitor showed meanwhile, in V.
+/// The driven voltage, and the monitor's voltage during and after the drive, in V.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Driven peak, from the DAC code and the board's full scale.
     pub driven_v_peak: f32,
-    /// The monitor in the positive half periods, mean.
+    /// Mean of the monitor in the positive half periods.
     pub high_v: f32,
-    /// The monitor in the negative half periods, mean.
+    /// Mean of the monitor in the negative half periods.
     pub low_v: f32,
-    /// The monitor after the end, mean.
+    /// Mean of the monitor after the end.
     pub rest_v: f32,
 }
 
-/// Plays one voltage for three seconds, and reads the monitor meanwhile and afterwards. The board's main loop calls
-/// [`Drive::step`] in every round, beside the session and with the tick running.
+/// Plays one voltage for three seconds, and reads the monitor during and after it. The board's main loop calls
+/// [`Drive::step`] in every round, together with the session and with the tick running.
 #[derive(Debug)]
 pub struct Drive {
     scene: heapless::Vec<u8, { scene_len(1) }>,
@@ -49,7 +49,7 @@ pub struct Drive {
     driven: Mean,
 }
 
-/// The half period of the carrier that the main loop has seen last.
+/// The last half period of the carrier seen by the main loop.
 #[derive(Clone, Copy, Debug, Default)]
 struct HalfPeriod {
     positive: bool,
@@ -88,7 +88,7 @@ impl Mean {
 }
 
 impl Drive {
-    /// A host that will play a square wave of `peak_v` to a board that has been disarmed.
+    /// A host that plays a square wave of `peak_v` on a disarmed board.
     pub fn new(peak_v: f32, board: &frixel_control::Board) -> Self {
         let tick_hz = board.tick_hz as f32;
         let layer = Layer::Constant(Constant { electric_friction_n: OUT_OF_REACH_N });
@@ -107,9 +107,9 @@ impl Drive {
         }
     }
 
-    /// One round: looks at the last status, the tick count and the monitor as they are now, and tells the session what
-    /// a host would. The caller discards what the session sends, so that it goes on listening. Returns the result once
-    /// the output is zero again.
+    /// One round: processes the last status, the tick count and the current monitor voltage, and sends the session a
+    /// host's messages. The caller discards the session's output, so that the session keeps listening. Returns the
+    /// result once the output is zero again.
     pub fn step(
         &mut self,
         status: &Status,
@@ -135,7 +135,7 @@ impl Drive {
         None
     }
 
-    /// Takes the monitor's voltage if the half period has settled.
+    /// Records the monitor's voltage if the half period has settled.
     fn measure(&mut self, status: &Status, now_tick: u32, monitor_v: f32) {
         let code = status.telemetry.dac_code;
         let positive = code > 0;

@@ -1,25 +1,25 @@
-//! The part of the script that shows what disables the amplifier without the firmware: the monostable outside of the
-//! processor, which SYNC feeds, and the arm switch's second pole. Everything else works without them, so that nothing
-//! else would show that one of them is bridged. The amplifier cannot be enabled meanwhile: its enable and its ready are
-//! unplugged, and the DAC is at zero.
+//! The part of the script that tests how the amplifier is disabled without the firmware: by the monostable outside the
+//! processor, which SYNC triggers, and by the arm switch's second pole. Nothing else would reveal a bridged one, since
+//! everything works without them. The amplifier cannot be enabled meanwhile: its enable and its ready are unplugged,
+//! and the DAC is at zero.
 
 use super::dialogue::{ask_while, await_inputs, confirm, expect_inputs};
 use super::script::{CLOSED, DONE, IDLE, check};
 use super::{Bench, Check, Stop, Sync, TestOutput};
 
-/// The word that the person types when the amplifier cannot be enabled.
+/// The word typed when the amplifier cannot be enabled.
 const UNPLUGGED: &str = "unplugged";
-/// A gate's low level, V. The voltmeter may be off by some millivolts.
+/// A gate's low level, V, with a tolerance of some millivolts for the voltmeter.
 const LOW_V: (f32, f32) = (-0.1, 0.4);
-/// A gate's high level, V: 3.3 V that fall no tenth of the time. A monostable that takes no new trigger before its
-/// pulse is over, and so falls once in each, still shows this.
+/// A gate's high level, V: 3.3 V that fall for less than a tenth of the time. A monostable that ignores triggers during
+/// its pulse, and thus falls after each, still passes this.
 const HIGH_V: (f32, f32) = (3.0, 3.6);
-/// Falling edges in a second of a level that is high for good.
+/// Falling edges per second of a constant high level.
 const NO_EDGES: (f32, f32) = (-0.5, 0.5);
-/// The mean of 3.3 V that last 0.5 to 1 ms every 2 ms, V.
+/// The mean of pulses of 3.3 V that last 0.5 to 1 ms, every 2 ms, V.
 const PULSE_MEAN_V: (f32, f32) = (0.8, 1.65);
 
-/// Everything that lets the amplifier be enabled but the switch.
+/// Enables the amplifier except for the switch.
 const ALL: TestOutput = TestOutput::Enable { kicked: true, sync: Sync::EveryPeriod };
 
 pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
@@ -32,7 +32,7 @@ pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
         UNPLUGGED,
     );
     expect_inputs(bench, IDLE, "switch released, ready in the air")?;
-    // The last code was not zero, and only CLEAR holds it off.
+    // The last code was not zero, and only CLEAR holds the output at zero.
     check(bench, Check::Dac)?;
     for (kicked, sync, what, expected) in [
         (true, Sync::Never, "ENABLE_LOGIC with PB6 high and no SYNC, V", LOW_V),
@@ -52,7 +52,7 @@ pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
     ask_while(bench, ALL, "ENABLE, switch released, ENABLE_LOGIC high, V", LOW_V)?;
     expect_inputs(bench, IDLE, "switch released, ready in the air")?;
     await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;
-    // Two poles that touch each other let 3.3 V past everything else.
+    // Touching poles bypass everything else with 3.3 V.
     ask_while(bench, TestOutput::Zero, "ENABLE, switch held, ENABLE_LOGIC low, V", LOW_V)?;
     expect_inputs(bench, CLOSED, "switch held, ready in the air")?;
     ask_while(bench, ALL, "ENABLE, switch held, ENABLE_LOGIC high, V", HIGH_V)?;

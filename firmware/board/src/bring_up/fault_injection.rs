@@ -1,27 +1,27 @@
-//! Which fault is injected next: each resets the board, and the next start checks that it was stored.
+//! Selects the next fault to inject: each resets the board, and the next start checks that it was stored.
 
 use frixel_wire::fault::Fault;
 
 /// The faults that bring-up injects, in this order.
 pub const FAULTS: [Fault; 4] = [Fault::Panic, Fault::HardFault, Fault::StackOverflow, Fault::Watchdog];
 
-/// How far the injection of faults has come at a start of the board.
+/// Progress of the fault injection at a start of the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Injection {
-    /// No fault had been injected, or something else has reset the board: all of them are still to come.
+    /// No fault had been injected, or another reset occurred: all of them are still to come.
     NotBegun,
     /// The last one was stored; this one is next.
     Next(Fault),
     /// All were stored.
     Passed,
-    /// This one was injected, and was not stored.
+    /// This one was injected, but not stored.
     NotStored(Fault),
 }
 
 impl Injection {
-    /// Returns how far the injection has come after a reset, before which the board had injected `injected` of
-    /// [`FAULTS`]; it has stored `found` as the reason of the reset. The board forgets `injected` when it calls this:
-    /// only the start directly after the last injected fault has passed.
+    /// Returns the progress after a reset, given the number of [`FAULTS`] injected before it and the stored reason
+    /// `found`. The board clears `injected` when it calls this: only the start directly after the last injected fault
+    /// passes.
     pub fn after_reset(injected: usize, found: Option<Fault>) -> Self {
         let Some(expected) = injected.checked_sub(1).and_then(|index| FAULTS.get(index)) else { return Self::NotBegun };
         match found {

@@ -1,39 +1,39 @@
-//! Lines that a person types at a terminal.
+//! Lines typed at a terminal.
 
 use super::Line;
 
 const BACKSPACE: u8 = 0x08;
 const DELETE: u8 = 0x7f;
 
-/// Makes lines of the bytes that a terminal sends.
+/// Assembles lines from a terminal's bytes.
 #[derive(Debug, Default)]
 pub struct LineReader {
     line: Line,
-    /// The last byte was a carriage return: a line feed after it ends no second line.
+    /// Whether the last byte was a carriage return: a following line feed does not end a second line.
     returned: bool,
 }
 
-/// The characters that the terminal shows for a byte.
+/// Echo of the terminal for a byte.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Typed {
     /// Nothing.
     Ignored,
     /// This character.
     Character(char),
-    /// The last character is gone.
+    /// The last character was erased.
     Erased,
     /// The line has ended.
     Ended(Line),
 }
 
 impl LineReader {
-    /// Forgets what has been typed since the last line.
+    /// Discards the current line.
     pub fn clear(&mut self) {
         self.line.clear();
     }
 
-    /// Takes a byte. Printable ASCII is text, backspace and delete erase, carriage return and line feed end the line. A
-    /// character beyond the longest line is ignored.
+    /// Processes a byte. Printable ASCII is text, backspace and delete erase, carriage return and line feed end the
+    /// line. A character beyond the longest line is ignored.
     pub fn push(&mut self, byte: u8) -> Typed {
         let after_return = core::mem::replace(&mut self.returned, byte == b'\r');
         match byte {

@@ -1,16 +1,16 @@
 //! Bring-up: takes a new board step by step from nothing connected to stored limits. `docs/hardware.md`, "Bring-up",
-//! describes the steps for the person who does them.
+//! describes the steps for the person who performs them.
 //!
-//! [`run`] is the script. It says what to do and asks for readings through a [`Bench`], which the board implements.
-//! These hold whatever board and person do:
+//! [`run`] is the script. It gives instructions and asks for readings through a [`Bench`], which the board implements.
+//! The following holds for any behaviour of board and person:
 //!
-//! - The script keeps nothing over a reset: each start begins with the checks without voltage and the test of the
+//! - The script keeps no state across a reset: each start begins with the checks without voltage and the test of the
 //!   switch.
-//! - Every step gates the next. A reading out of its range, a check that fails and a fault end the script with a
-//!   [`Stop`]; only a reset begins it again.
-//! - [`Bench::drive`] takes a [`Pressed`], which only a release of the arm switch and a press after it make.
-//! - Voltage comes from the firmware's own session, ticker and supervisor, to which [`Drive`] is the host. Bring-up has
-//!   no way to clear a fault.
+//! - Every step gates the next. A reading out of its range, a failed check or a fault ends the script with a [`Stop`];
+//!   only a reset restarts it.
+//! - [`Bench::drive`] takes a [`Pressed`], which only a release of the arm switch followed by a press creates.
+//! - Voltage comes from the firmware's own session, ticker and supervisor, with [`Drive`] as the host. Bring-up cannot
+//!   clear a fault.
 
 mod amplifier;
 mod dialogue;
@@ -33,15 +33,15 @@ pub use script::{Pressed, Stop, run};
 /// Longest line that a person may type, in bytes.
 pub const LINE_MAX_LEN: usize = 32;
 
-/// A line that a person has typed.
+/// A typed line.
 pub type Line = heapless::String<LINE_MAX_LEN>;
 
 /// Levels of the board's inputs, neither debounced nor latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inputs {
-    /// The amplifier reports that it can drive.
+    /// Whether the amplifier reports that it can drive.
     pub amplifier_ready: bool,
-    /// The contact of the arm switch is closed.
+    /// Whether the contact of the arm switch is closed.
     pub switch_closed: bool,
 }
 
@@ -50,11 +50,11 @@ pub struct Inputs {
 pub enum TestOutput {
     /// Amplifier enable and DAC clear are low, and SYNC is high.
     Zero,
-    /// The DAC puts out a voltage, in V. The amplifier is disabled.
+    /// The DAC outputs a voltage, in V. The amplifier is disabled.
     Dac(f32),
-    /// The DAC puts out zero.
+    /// The DAC outputs zero.
     Enable {
-        /// Amplifier enable is kicked.
+        /// Whether the amplifier enable is kicked.
         kicked: bool,
         /// SYNC rises.
         sync: Sync,
@@ -66,46 +66,46 @@ pub enum TestOutput {
 pub enum Sync {
     /// Not at all.
     Never,
-    /// In every period, as the tick lets it.
+    /// In every period, like the tick does.
     EveryPeriod,
-    /// Every 2 ms, which is longer than an external monostable may wait for it.
+    /// Every 2 ms, which is too slow for an external monostable.
     Every2Ms,
 }
 
-/// The checks that a board makes by itself. None of them drives anything behind the DAC.
+/// The checks that a board performs by itself. None of them drives anything after the DAC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// The memory in which limits are stored can be written while the firmware runs.
+    /// The memory for limits can be written while the firmware runs.
     Storage,
     /// Amplifier enable and DAC clear are low without a kick, high after one, low again within 1 ms of the last one,
-    /// and low at once when told so.
+    /// and low immediately when disabled.
     OneShot,
-    /// A panic, a fault, a stack overflow and a hang have each reset the board and stored why ([`FAULTS`]). The board
-    /// resets meanwhile, and the script begins again.
+    /// A panic, a fault, a stack overflow and a hang each reset the board and stored their reason ([`FAULTS`]). The
+    /// board resets meanwhile, and the script restarts.
     FaultsAreStored,
     /// The DAC is configured and has been read back.
     Dac,
-    /// The tick and the watchdog run from now on. In one second there are as many ticks as the board claims, none of
-    /// them late, and the supervisor has found no fault.
+    /// The tick and the watchdog run from now on. In one second, the number of ticks matches the tick rate, none is
+    /// late, and the supervisor has found no fault.
     Ticks,
 }
 
-/// A board and the person in front of it.
+/// A board and the person operating it.
 pub trait Bench {
     /// Shows a line of text to the person.
     fn say(&mut self, text: fmt::Arguments<'_>);
 
-    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], the board puts out `output`
-    /// meanwhile, as long as the amplifier is not ready, and zero otherwise.
+    /// Waits for a line from the person, without its end. Before [`Check::Ticks`], the board outputs `output` meanwhile
+    /// while the amplifier is not ready, and zero otherwise.
     fn read_line(&mut self, output: TestOutput) -> Line;
 
-    /// Does a check; `false` if it failed. Says what was wrong.
+    /// Performs a check; `false` if it failed. Shows the reason.
     fn check(&mut self, check: Check) -> bool;
 
-    /// The inputs now.
+    /// The current inputs.
     fn inputs(&mut self) -> Inputs;
 
-    /// Whether the arm switch is held, as the firmware sees it; `false` after each disarming until it was released and
+    /// Whether the arm switch is held, as seen by the firmware; `false` after each disarming until it was released and
     /// pressed. Called after [`Check::Ticks`].
     fn switch_is_held(&mut self) -> bool;
 
@@ -113,7 +113,7 @@ pub trait Bench {
     /// [`Check::Ticks`].
     fn drive(&mut self, pressed: Pressed, peak_v: f32) -> Result<Reading, DriveError>;
 
-    /// Whether limits are within what the board may store. Says what is not.
+    /// Whether limits are within what the board may store. Shows the ones that are not.
     fn may_store(&mut self, limits: &BoardLimits) -> bool;
 
     /// Stores limits while the tick runs, and reads them back; `false` if that failed or made a tick late.

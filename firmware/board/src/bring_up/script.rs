@@ -9,45 +9,45 @@ use super::dialogue::{ask, ask_while, await_inputs, confirm, expect, expect_inpu
 use super::enable_path::check_enable_path;
 use super::{Bench, Check, DriveError, Inputs, Reading, TestOutput};
 
-/// The word that the person types when a step without a reading is done.
+/// The word typed when a step without a reading is done.
 pub(super) const DONE: &str = "done";
-/// The word that the person types first, which shows that the board receives.
+/// The word typed first, which shows that the board receives.
 const GREETING: &str = "frixel";
 
-/// The pull-downs of amplifier enable, in front of and behind the second pole, and of DAC clear are 10 kOhm; a meter that supplies the processor through its
-/// protection diodes reads less.
+/// Range of the pull-downs of amplifier enable (before and after the second pole) and DAC clear, kOhm; nominally 10. A
+/// meter that supplies the processor through its protection diodes reads less.
 pub(super) const PULL_DOWN_KOHM: (f32, f32) = (8.0, 12.0);
 /// Each supply of the DAC, V: 15 V, regulated within 5 %. The DAC bears 16.5 V (AD5761R, table 1).
 const DAC_SUPPLY_V: (f32, f32) = (14.25, 15.75);
-/// Voltages that the DAC puts out, in V. Its error is some millivolts; the voltmeter's is what the tolerance is for.
+/// Voltages output by the DAC, in V. Its error is some millivolts; the tolerance is for the voltmeter.
 const DAC_VOLTAGES_V: [f32; 3] = [0.0, 5.0, -5.0];
 const DAC_TOLERANCE_V: f32 = 0.15;
 
 /// The first voltage at the amplifier's output, V peak.
 const FIRST_V_PEAK: f32 = 10.0;
-/// Largest step from a voltage that has passed to the next, V peak.
+/// Largest step from a passed voltage to the next, V peak.
 const STEP_V_PEAK: f32 = 25.0;
-/// The voltage at which edges are measured, V peak: one that has passed before.
+/// The voltage at which edges are measured, V peak; it has passed before.
 const EDGES_V_PEAK: f32 = 25.0;
-/// Largest deviation of probe and monitor from the driven peak: the amplifier's gain is within 5 %, level shifter, ADC
-/// reference and probe within 2 % each.
+/// Largest deviation of probe and monitor from the driven peak: 5 % for the amplifier's gain, and 2 % each for level
+/// shifter, ADC reference and probe.
 const GAIN_TOLERANCE: f32 = 0.1;
-/// What is added to it: the resolution of an oscilloscope with a 100:1 probe.
+/// Additional tolerance: the resolution of an oscilloscope with a 100:1 probe.
 const READ_OFF_V: f32 = 1.0;
-/// Resistance behind the series resistor, Ohm: R3, which discharges the capacitor, beside the probe's hundred megohms.
-/// The probe shows less than the amplifier puts out by what the series resistor drops.
+/// Resistance after the series resistor, Ohm: R3, which discharges the capacitor, in parallel with the probe's hundred
+/// megohms. The probe shows the amplifier's output minus the voltage across the series resistor.
 const SHUNT_OHM: f32 = 1.0 / (1.0 / 10e6 + 1.0 / 100e6);
-/// Largest offset of the monitor: half of what the supervisor tolerates at 200 V full scale, so that it has the other
-/// half for the edges.
+/// Largest offset of the monitor: half of the supervisor's tolerance at 200 V full scale, which leaves the other half
+/// for the edges.
 const OFFSET_MAX_V: f32 = 4.0;
 
-/// The time constant of series resistance and capacitor may be this factor below or above the one of the electrode
-/// that the limits assume: a capacitor of 0.47 nF less 5 % in place of 0.53 nF, and what an oscilloscope is read to.
+/// Factors by which the time constant of series resistance and capacitor may differ from that of the electrode assumed
+/// by the limits: for a capacitor of 0.47 nF less 5 % in place of 0.53 nF, and the precision of an oscilloscope.
 const EDGE_FACTOR: (f32, f32) = (0.7, 1.4);
-/// The amplifier's own time constant is at most this part of the electrode's; more is an amplifier that is too slow, or
-/// the same point measured twice.
+/// Largest ratio of the amplifier's own time constant to the electrode's; more indicates an amplifier that is too slow,
+/// or the same point measured twice.
 const AMPLIFIER_SHARE_MAX: f32 = 0.5;
-/// No amplifier of some tens of volts a microsecond is faster.
+/// Smallest time constant of an amplifier with some tens of volts per microsecond.
 const AMPLIFIER_MIN_US: f32 = 0.1;
 
 /// Why bring-up has ended. The output is zero.
@@ -59,18 +59,18 @@ pub enum Stop {
     Check(Check),
     /// A reading was out of its range.
     Reading {
-        /// What was read, with its unit.
+        /// The measured quantity, with its unit.
         what: &'static str,
         /// The reading.
         found: f32,
         /// Its range.
         expected: (f32, f32),
     },
-    /// An input has changed that should not have.
+    /// An unexpected change of an input.
     Inputs {
-        /// What was done.
+        /// The preceding action.
         after: &'static str,
-        /// Inputs that were expected after it.
+        /// Inputs expected after it.
         expected: Inputs,
         /// The inputs.
         found: Inputs,
@@ -115,7 +115,7 @@ impl From<DriveError> for Stop {
     }
 }
 
-/// Proof that the arm switch was released and then pressed. Each voltage uses one up.
+/// Proof that the arm switch was released and then pressed. Each voltage consumes one.
 #[derive(Debug)]
 pub struct Pressed(());
 
@@ -126,8 +126,8 @@ pub(super) const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };
 /// The switch is closed.
 pub(super) const CLOSED: Inputs = Inputs { switch_closed: true, ..IDLE };
 
-/// Brings a board up, from nothing connected to stored limits, and returns these: `built_in`, with full scale and edges
-/// as measured. Voltages go up to `built_in.voltage_max_v_peak`.
+/// Brings a board up, from nothing connected to stored limits, and returns the limits: `built_in`, with full scale and
+/// edges as measured. Voltages go up to `built_in.voltage_max_v_peak`.
 pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits, Stop> {
     let largest = BoardLimits { full_scale_v_peak: largest_full_scale_v_peak(built_in), ..*built_in };
     if ![built_in, &largest].into_iter().all(|limits| bench.may_store(limits)) {
@@ -146,7 +146,7 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
     Ok(limits)
 }
 
-/// The serial port works in both directions once this returns.
+/// Waits for the greeting, which shows that the serial port works in both directions.
 fn greet(bench: &mut impl Bench) {
     bench.say(format_args!(""));
     bench.say(format_args!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts."));
@@ -192,7 +192,7 @@ fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Each input changes, and it changes alone.
+/// Checks that each input changes, and changes alone.
 fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
@@ -222,7 +222,7 @@ fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Drives one voltage after the other, and returns the full scale, in V peak, as probe and monitor show it.
+/// Drives a series of voltages, and returns the full scale, in V peak, measured by probe and monitor.
 fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
     bench.say(format_args!("5. Voltage. Hold the switch until the output is off: a release before that is a fault."));
     let mut full_scale_v_peak = built_in.full_scale_v_peak;
@@ -233,28 +233,27 @@ fn drive_voltages(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32,
         let probe_v = probe_v * amplifier_v_per_probe_v(built_in);
         let monitor_v = 0.5 * (reading.high_v - reading.low_v);
         expect("the monitor, V, against the probe", monitor_v, around(probe_v))?;
-        // The larger one: a reading that is too low would raise every voltage that the firmware puts out later, beyond
-        // the margin of the touch bound.
+        // The larger one: a low reading would raise every later voltage of the firmware, beyond the margin of the touch
+        // bound.
         full_scale_v_peak = built_in.full_scale_v_peak * probe_v.max(monitor_v) / reading.driven_v_peak;
         passed_v_peak = Some(peak_v);
     }
     Ok(full_scale_v_peak)
 }
 
-/// The largest full scale that readings may give, V peak. What it lets a stuck amplifier drive is checked before any
-/// voltage.
+/// The largest full scale that readings may give, V peak. The resulting current of a stuck amplifier is checked before
+/// any voltage.
 fn largest_full_scale_v_peak(built_in: &BoardLimits) -> f32 {
     let (_, most_v) = around(built_in.voltage_max_v_peak);
     built_in.full_scale_v_peak * amplifier_v_per_probe_v(built_in) * most_v / built_in.voltage_max_v_peak
 }
 
-/// The voltage in front of the series resistor, as a multiple of that at the probe.
+/// The voltage before the series resistor, as a multiple of the voltage at the probe.
 fn amplifier_v_per_probe_v(built_in: &BoardLimits) -> f32 {
     1.0 + built_in.series_resistance_ohm / SHUNT_OHM
 }
 
-/// The voltage after one that has passed: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the
-/// last.
+/// The voltage after a passed one: 10 V, then multiples of [`STEP_V_PEAK`] up to `max_v_peak`, which is the last.
 fn next_voltage(passed_v_peak: Option<f32>, max_v_peak: f32) -> Option<f32> {
     match passed_v_peak {
         None => Some(FIRST_V_PEAK.min(max_v_peak)),
@@ -263,7 +262,7 @@ fn next_voltage(passed_v_peak: Option<f32>, max_v_peak: f32) -> Option<f32> {
     }
 }
 
-/// Drives a voltage, and checks what the monitor has shown.
+/// Drives a voltage, and checks the monitor's readings.
 fn drive(bench: &mut impl Bench, peak_v: f32) -> Result<Reading, Stop> {
     let pressed = press(bench, peak_v);
     let reading = bench.drive(pressed, peak_v)?;
@@ -287,8 +286,8 @@ fn press(bench: &mut impl Bench, peak_v: f32) -> Pressed {
     Pressed(())
 }
 
-/// Asks for the rise times at electrode and amplifier, and returns the one time constant that takes as much of the
-/// carrier's mean square as amplifier and series resistor in a row ([`BoardLimits::edge_time_constant_s`]), in s.
+/// Asks for the rise times at electrode and amplifier, and returns the single time constant with the same loss of the
+/// carrier's mean square as amplifier and series resistor together ([`BoardLimits::edge_time_constant_s`]), in s.
 fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, Stop> {
     bench.say(format_args!("6. Edges: set both probes to trigger once, 20 us a division."));
     drive(bench, EDGES_V_PEAK.min(built_in.voltage_max_v_peak))?;
@@ -298,7 +297,7 @@ fn measure_edges(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<f32, 
     let electrode_us = ask(bench, "at the capacitor: time from the edge's start to 63 % of it, us", with_amplifier_us)?;
     let amplifier_us = (AMPLIFIER_MIN_US, AMPLIFIER_SHARE_MAX * electrode_us);
     let amplifier_us = ask(bench, "at the monitor: time from the edge's start to 63 % of it, us", amplifier_us)?;
-    // Of two lags in a row, the rise to 63 % takes about as long as both together.
+    // For two successive lags, the rise to 63 % takes about as long as both together.
     let resistor_us = electrode_us - amplifier_us;
     expect("the time at the capacitor less that at the monitor, us", resistor_us, (least_us, most_us))?;
     Ok(1e-6 * (electrode_us - amplifier_us * resistor_us / electrode_us))
@@ -315,7 +314,7 @@ fn store(bench: &mut impl Bench, limits: &BoardLimits) -> Result<(), Stop> {
     if bench.store(limits) { Ok(()) } else { Err(Stop::NotStored) }
 }
 
-/// The range that is within the tolerance of a gain.
+/// The range within the tolerance of a gain.
 fn around(volts: f32) -> (f32, f32) {
     let tolerance_v = GAIN_TOLERANCE * volts.abs() + READ_OFF_V;
     (volts - tolerance_v, volts + tolerance_v)

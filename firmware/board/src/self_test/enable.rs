@@ -1,33 +1,33 @@
-//! Pulses of the enable. Ready and the arm switch are read all the while: some amplifiers are ready only while they are
-//! enabled, so that a pulse is the first time at which one shows that it is plugged in.
+//! Pulses of the enable. Ready and the arm switch are read throughout: some amplifiers are ready only while enabled, so
+//! that a pulse may be the first sign of a connected one.
 
 use super::script::{Counts, NEVER_US, Stop, refuse_inputs, refuse_inputs_or_voltage};
 use super::{Fall, LoopedBoard};
 
-/// Kicks of the pulse that shows that the one-shot is retriggered.
+/// Kicks of the pulse that tests retriggering of the one-shot.
 const KICKS: u32 = 5;
-/// Time between two kicks, us, and the longest wait for the enable to fall.
+/// Time between two kicks, us; also the longest wait for the enable to fall.
 const KICK_US: u32 = 500;
 const FALL_WAIT_US: u32 = 10_000;
 /// Time for the enable to rise before it is disabled again, us.
 const RISE_WAIT_US: u32 = 20;
 /// Longest time from a kick until the enable is high, us.
 const RISE_MAX_US: u32 = 10;
-/// Longest time from the last kick until the enable is low, us, and from disabling it.
+/// Longest time from the last kick, or from disabling, until the enable is low, us.
 const FALL_MAX_US: u32 = 1_000;
 const CUT_MAX_US: u32 = 2;
 
 /// Edges of a pulse.
 struct Pulse {
-    /// From the first kick until the enable rose, us; `None` if it did not.
+    /// Time from the first kick until the enable rose, us; `None` if it did not.
     rise_us: Option<u32>,
-    /// From the last kick until it fell, us; `None` if it did not in [`FALL_WAIT_US`].
+    /// Time from the last kick until it fell, us; `None` if it did not within [`FALL_WAIT_US`].
     fall_us: Option<u32>,
-    /// It fell more than once.
+    /// Whether it fell more than once.
     fell_again: bool,
 }
 
-/// Pulses the enable. Nothing that it could switch on is there, as far as ready, switch and monitor show.
+/// Pulses the enable. Ready, switch and monitor have shown no amplifier that it could switch on.
 pub(super) fn measure_enable<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<(), Stop> {
     refuse_inputs_or_voltage(board)?;
     let Pulse { rise_us, fall_us, fell_again } = pulse(board)?;
@@ -54,7 +54,7 @@ fn pulse<B: LoopedBoard>(board: &mut B) -> Result<Pulse, Stop> {
         board.kick();
         watch(board, last, KICK_US, |_| None::<()>)?;
         rose = rose.or(board.enable_rose());
-        // It may fall only after the last kick, and that takes longer than the time between two of them.
+        // It may fall only after the last kick, which takes longer than the time between two kicks.
         fell_again |= board.enable_fell().is_some();
     }
     let fell = watch(board, last, FALL_WAIT_US, B::enable_fell)?;
@@ -66,7 +66,7 @@ fn pulse<B: LoopedBoard>(board: &mut B) -> Result<Pulse, Stop> {
     })
 }
 
-/// Kicks the enable, disables it again, and returns the time from that until it fell, us.
+/// Kicks the enable, disables it again, and returns the time from disabling until it fell, us.
 fn cut_pulse<B: LoopedBoard>(board: &mut B) -> Result<Option<u32>, Stop> {
     let kicked = board.forget_edges();
     board.kick();
@@ -77,7 +77,7 @@ fn cut_pulse<B: LoopedBoard>(board: &mut B) -> Result<Option<u32>, Stop> {
     Ok(fell.map(|Fall { at, .. }| us_between::<B>(cut, at)))
 }
 
-/// Waits until `look` finds something, for so long since a time. Disables the enable and ends the script as soon as
+/// Waits until `look` returns a result, up to a time since a start. Disables the enable and ends the script as soon as
 /// ready is high or the arm switch is closed.
 fn watch<B: LoopedBoard, T>(
     board: &mut B,

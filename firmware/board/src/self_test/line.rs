@@ -1,16 +1,15 @@
-//! The test of the serial line: both sides send numbered blocks as fast as the line takes them, and count what is
-//! missing.
+//! The test of the serial line: both sides send numbered blocks at the full line rate, and count missing ones.
 
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, encode};
 
-/// Bytes of a block: its number, then bytes that follow from it.
+/// Bytes of a block: its number, followed by bytes derived from it.
 const BLOCK_LEN: usize = 128;
 
-/// One side of the test. Board and host have one each.
+/// One side of the test, used by board and host.
 #[derive(Debug)]
 pub struct LineTest {
     decoder: Decoder,
-    /// The block that is being sent, and the range of its bytes that were not sent yet.
+    /// The block being sent, and the range of its unsent bytes.
     frame: [u8; FRAME_MAX_LEN],
     sent: usize,
     len: usize,
@@ -24,7 +23,7 @@ impl LineTest {
     pub const fn new() -> Self {
         Self {
             decoder: Decoder::new(),
-            // An empty frame, which ends what was on the line before.
+            // An empty frame, which ends earlier data on the line.
             frame: [0; FRAME_MAX_LEN],
             sent: 0,
             len: 1,
@@ -38,7 +37,7 @@ impl LineTest {
     pub fn take(&mut self, mut bytes: &[u8]) {
         while let Some(block) = self.decoder.next_frame(&mut bytes) {
             let Some(number) = block.first_chunk().map(|number| u32::from_le_bytes(*number)) else { continue };
-            // A block from before the test, such as text of the same length, has another content.
+            // A block from before the test, such as text of the same length, has other content.
             if block == contents(number) {
                 self.missing = self.missing.wrapping_add(number.wrapping_sub(self.next_in));
                 self.next_in = number.wrapping_add(1);
@@ -56,27 +55,27 @@ impl LineTest {
         self.frame.get(self.sent..self.len).unwrap_or_default()
     }
 
-    /// So many of the [`Self::pending`] bytes were sent.
+    /// Records that `len` of the [`Self::pending`] bytes were sent.
     pub fn advance(&mut self, len: usize) {
         self.sent = self.len.min(self.sent + len);
     }
 
-    /// Blocks that came whole.
+    /// Number of intact blocks received.
     pub fn received(&self) -> u32 {
         self.next_in.wrapping_sub(self.missing)
     }
 
-    /// Blocks that did not come, up to the last one that did.
+    /// Number of missing blocks, up to the last one received.
     pub fn missing(&self) -> u32 {
         self.missing
     }
 
-    /// Pieces between two ends of frames that were no block.
+    /// Number of invalid pieces between two ends of frames.
     pub fn damaged(&self) -> u32 {
         self.decoder.rejected()
     }
 
-    /// Blocks that were begun.
+    /// Number of blocks begun.
     pub fn sent(&self) -> u32 {
         self.next_out
     }

@@ -1,4 +1,4 @@
-//! The tick under the largest scene that the board accepts.
+//! The tick under the largest scene accepted by the board.
 
 use frixel_control::Board;
 use frixel_layers::{Beat, Blend, Burst, Constant, Grating, Layer, Noise, Record, Region, Vibration, Wave, cost};
@@ -10,19 +10,19 @@ use super::{LoopedBoard, Round, Stop};
 use crate::local_host::{LocalHost, Progress};
 use crate::local_scene::{header, scene, scene_len};
 
-/// Peak voltage of the scene, V. The wires show the monitor of an amplifier at 0 V, up to 4 V beside that: the
-/// supervisor takes what is within 8 V and 25 % of the driven voltage for right, and judges no gain below 4 V rms.
+/// Peak voltage of the scene, V. The wires simulate the monitor of an amplifier at 0 V, up to 4 V off. The supervisor
+/// accepts deviations of 8 V and 25 % of the driven voltage, and judges no gain below 4 V rms.
 const PEAK_V: f32 = 3.0;
-/// Largest electric friction of a layer, N: of the size that [`PEAK_V`] reaches, so that the tick looks up voltages.
+/// Largest electric friction of a layer, N, of the size reached at [`PEAK_V`], so that the tick looks up voltages.
 const HIGH_N: f32 = 9e-6;
-/// Longest time that the scene plays in one piece, s.
+/// Longest uninterrupted play of the scene, s.
 const PIECE_S: f32 = 60.0;
-/// Time for which the switch is let go between two pieces, s.
+/// Time for which the switch is released between two plays, s.
 const RELEASED_S: f32 = 0.1;
 /// More layers than fit into a tick.
 const LAYERS_MAX: usize = 16;
 
-/// Plays the largest scene again and again.
+/// Plays the largest scene repeatedly.
 pub(super) struct Load {
     scene: Vec<u8, { scene_len(LAYERS_MAX) }>,
     core_cycles: u32,
@@ -38,13 +38,13 @@ enum Stage {
 }
 
 impl Load {
-    /// The largest scene that `board` accepts: its layers take turns, so that no code stays in a cache for certain.
+    /// The largest scene accepted by `board`: its kinds of layers alternate, so that no code reliably stays in a cache.
     pub(super) fn largest(board: &Board) -> Self {
         let header = header(PEAK_V);
         let mut records = Vec::<Record, LAYERS_MAX>::new();
         let core = board.limits.core;
         let mut core_cycles = cost::of_empty_scene(&header).on(core);
-        // Those that do not fit any more are passed over, so that smaller ones fill what is left.
+        // Layers that no longer fit are skipped, so that smaller ones fill the rest.
         for layer in layers().iter().cycle().take(4 * LAYERS_MAX) {
             let record = Record { region: Region::Screen, blend: Blend::Add, gain: 1.0, layer: *layer };
             let with_it = core_cycles + cost::of_record(&record, &[]).on(core);
@@ -55,7 +55,7 @@ impl Load {
         Self { scene: scene(&header, &records), core_cycles, stage: Stage::Released, since_tick: 0, now_tick: 0 }
     }
 
-    /// Cycles of its longest tick, as they are estimated without wait states of the flash.
+    /// Estimated cycles of its longest tick, without flash wait states.
     pub(super) fn core_cycles(&self) -> u32 {
         self.core_cycles
     }
@@ -65,7 +65,7 @@ impl Load {
         self.now_tick
     }
 
-    /// Plays the piece to its end, and lets the switch go: nobody has to call [`Self::round`] any more.
+    /// Plays the scene to its end, and releases the switch, so that [`Self::round`] need not be called any more.
     pub(super) fn rest(&mut self, board: &mut impl LoopedBoard) -> Result<(), Stop> {
         while !matches!(self.stage, Stage::Released) {
             match &mut self.stage {
@@ -77,8 +77,8 @@ impl Load {
         Ok(())
     }
 
-    /// One round of the main loop; returns whether the scene plays. The enable is low, but an input that is high says
-    /// that something was plugged in meanwhile.
+    /// One round of the main loop; returns whether the scene plays. The enable is low, but a high input indicates that
+    /// something was connected meanwhile.
     pub(super) fn round(&mut self, board: &mut impl LoopedBoard) -> Result<bool, Stop> {
         refuse_inputs(board)?;
         let released_ticks = board.board().ticks(RELEASED_S);
@@ -104,7 +104,7 @@ impl Load {
     }
 }
 
-/// A layer of each of some kinds, the ones that take the longest first.
+/// One layer of each of several kinds, the most expensive first.
 fn layers() -> [Layer; 6] {
     let grating = |wave| {
         Layer::Grating(Grating {
@@ -133,7 +133,7 @@ fn layers() -> [Layer; 6] {
     ]
 }
 
-/// What was counted between two looks at a meter. The longest tick is that of all ticks so far.
+/// The counts between two readings of a meter. The longest tick is that of all ticks so far.
 pub(super) fn counted_since(before: &TickTimes, now: &TickTimes) -> TickTimes {
     let mut histogram = now.histogram;
     for (count, before) in histogram.iter_mut().zip(before.histogram) {

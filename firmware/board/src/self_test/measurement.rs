@@ -1,27 +1,26 @@
-//! Measurements, as the board says them and the host reads them.
+//! Measurements, as sent by the board and read by the host.
 
 use core::fmt;
 
 use frixel_wire::message::TICK_TIME_CLASSES;
 
-/// Begin the lines: the first one, one with a measurement, one with a histogram, the last one, and the one that says
-/// why there are no more.
+/// Prefixes of the lines: the first one, a measurement, a histogram, the last one, and the reason for an early end.
 const BEGIN: &str = "frixel self-test, version ";
 const MEASURED: &str = "measured";
 const HISTOGRAM: &str = "histogram";
 const END: &str = "end";
 const STOPPED: &str = "STOP. ";
-/// Stands for a measurement without a range.
+/// Placeholder for a measurement without a range.
 const ANY: &str = "any";
 
-/// A number that was measured. Its unit stands at the end of its name.
+/// A measured number. Its name ends with its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measurement<'n> {
     /// Its name, without spaces.
     pub name: &'n str,
-    /// What was found.
+    /// The measured value.
     pub found: u32,
-    /// The least and the largest number that pass; `None` for one that only informs.
+    /// The smallest and the largest passing value; `None` for information only.
     pub range: Option<(u32, u32)>,
 }
 
@@ -32,7 +31,7 @@ impl Measurement<'_> {
     }
 }
 
-/// What a line of the script says to a program.
+/// Machine-readable content of a line of the script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Said<'n> {
     /// The script begins: its version, and the kind of board.
@@ -41,14 +40,14 @@ pub enum Said<'n> {
     Measured(Measurement<'n>),
     /// Ticks by eighths of the deadline, those beyond it last: name and counts.
     Histogram(&'n str, [u32; TICK_TIME_CLASSES + 1]),
-    /// The script has ended after so many measurements, of which so many have failed.
+    /// The script has ended.
     End {
         /// Number of measurements.
         measured: u32,
-        /// Number of those out of their range.
+        /// Number of measurements out of range.
         failed: u32,
     },
-    /// The script has ended before its end, for this reason.
+    /// The script has ended early, for this reason.
     Stopped(&'n str),
 }
 
@@ -75,7 +74,7 @@ impl fmt::Display for Said<'_> {
 }
 
 impl<'n> Said<'n> {
-    /// Reads a line; `None` if it is text for the person.
+    /// Parses a line; `None` for text meant for the person.
     pub fn parse(line: &'n str) -> Option<Self> {
         if let Some((version, board)) = line.strip_prefix(BEGIN).and_then(|rest| rest.split_once(", of ")) {
             return Some(Self::Begin(version.parse().ok()?, board));

@@ -7,41 +7,41 @@ use super::load::{Load, counted_since};
 use super::{Clocks, Inputs, Levels, LineTest, LoopedBoard, Measurement, Said, VERSION, Wire};
 use crate::bring_up::DriveError;
 
-/// What is typed first, which shows that the board receives.
+/// The word typed first, which shows that the board receives.
 pub const GREETING: &str = "frixel";
-/// What the person types once the amplifier is unplugged.
+/// The word typed once the amplifier is unplugged.
 pub const UNPLUGGED: &str = "unplugged";
-/// What is typed to test the line, followed by seconds.
+/// The word typed to test the line, followed by seconds.
 pub const LINE_TEST: &str = "line";
-/// What is typed to leave the test of the line out.
+/// The word typed to skip the line test.
 pub const SKIP: &str = "skip";
 
-/// Bits of one byte over SDI, each alone and all but each.
+/// Bytes over SDI with each single bit set and cleared.
 const PATTERNS: [u8; 12] = [0x00, 0xff, 0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x40, 0x80, 0x55, 0xaa];
-/// Frames whose clocks and latch are measured: a quarter of a second, each.
+/// Number of frames for measuring clocks and latch, a quarter of a second each.
 const FRAMES: u32 = 10_000;
 /// Clocks of a frame of the DAC.
 const FRAME_CLOCKS: u32 = 24;
-/// Cycles by which the capture of an edge may be off: its synchroniser takes some.
+/// Tolerance of a captured edge in cycles: its synchroniser takes some.
 const CAPTURE_CYCLES: u32 = 8;
-/// Cycles by which the instant of a latch may move: the synchroniser's one.
+/// Jitter of a latch in cycles: one of the synchroniser.
 const JITTER_CYCLES: u32 = 2;
-/// Stands for an edge that was not seen.
+/// Placeholder for an edge that was not captured.
 pub(super) const NEVER_US: u32 = 99_999;
-/// Largest voltage at the amplifier that counts as zero, V: the offset that bring-up allows.
+/// Largest voltage at the amplifier that counts as zero, V: the offset allowed by bring-up.
 const MONITOR_ZERO_V: f32 = 4.0;
-/// Voltages of the ADC's loop, mV, and how much they may be off: 1 % of either side.
+/// Voltages of the ADC loop, mV, and their tolerance: 1 % on either side.
 const LOOP_MV: [(u32, &str); 3] = [(300, "adc_at_300_mv"), (1_650, "adc_at_1650_mv"), (3_000, "adc_at_3000_mv")];
 const LOOP_TOLERANCE_MV: u32 = 60;
-/// Seconds for which the ticks are counted.
+/// Time for which ticks are counted, s.
 const COUNTED_S: f32 = 3.0;
-/// Seconds without a byte after which the test of the line is over, before and after the first one.
+/// Silence after which the line test ends, before and after its first byte, s.
 const FIRST_BYTE_S: f32 = 5.0;
 const LAST_BYTE_S: f32 = 0.5;
-/// Bytes that are taken from the port in a round.
+/// Largest number of bytes taken from the port per round.
 const CHUNK_LEN: usize = 256;
 
-/// Why the self-test has ended before its end. The enable is low.
+/// Why the self-test has ended early. The enable is low.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
     /// The amplifier's ready is high.
@@ -50,15 +50,15 @@ pub enum Stop {
     Switch,
     /// Something drives the monitor's pin.
     MonitorDriven(Levels),
-    /// The monitor does not show zero while the loop puts zero there: mV.
+    /// The monitor does not read zero while the loop outputs zero; mV.
     MonitorNotZero(u32),
     /// A wire is missing.
     Missing(Wire),
-    /// The pin at the end of a wire has these levels at rest.
+    /// The levels at rest of the pin at the end of a wire are wrong.
     Resting(Wire, Levels),
     /// The enable has not fallen after a pulse.
     EnableStaysHigh,
-    /// SDO did not receive what SDI sent: so many of the bytes were others, all of them if the wire is missing.
+    /// SDO did not receive what SDI sent: the number of wrong bytes, which is all of them if the wire is missing.
     Data(u32),
     /// The scene was not played.
     Drive(DriveError),
@@ -158,17 +158,17 @@ fn steps(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
     Ok(failed)
 }
 
-/// The serial port works in both directions once this returns.
+/// Waits for the greeting, which shows that the serial port works in both directions.
 fn greet(board: &mut impl LoopedBoard) {
     let kind = board.board().kind;
     board.say(format_args!(""));
     board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
     confirm(board, format_args!("This begins the self-test."), GREETING);
-    // Not before: what a board says at its start is lost where no host has opened the port yet.
+    // Not earlier: output at the start is lost if no host has opened the port yet.
     board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
 }
 
-/// Says what to do until the person types `word`.
+/// Shows an instruction until the person types `word`.
 fn confirm(board: &mut impl LoopedBoard, what: fmt::Arguments<'_>, word: &str) {
     loop {
         board.say(format_args!("{what} Then type: {word}"));
@@ -187,7 +187,7 @@ pub(super) fn refuse_inputs(board: &mut impl LoopedBoard) -> Result<(), Stop> {
     }
 }
 
-/// Ends the script if an amplifier is there, before anything drives the monitor's wire.
+/// Ends the script if an amplifier is connected, before anything drives the monitor's wire.
 fn refuse_amplifier(board: &mut impl LoopedBoard) -> Result<(), Stop> {
     refuse_inputs(board)?;
     match board.levels(Wire::Monitor) {
@@ -196,7 +196,7 @@ fn refuse_amplifier(board: &mut impl LoopedBoard) -> Result<(), Stop> {
     }
 }
 
-/// Ends the script if an input is high, or if the monitor does not show zero while the loop puts zero there.
+/// Ends the script if an input is high, or if the monitor does not read zero while the loop outputs zero.
 pub(super) fn refuse_inputs_or_voltage<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     refuse_inputs(board)?;
     let found_mv = board.loop_mv(B::MONITOR_ZERO_MV);
@@ -216,7 +216,7 @@ fn unplug<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     refuse_amplifier(board)
 }
 
-/// Finds each wire by what rests at its beginning. The enable stays low.
+/// Finds each wire by the resting level of its start. The enable stays low.
 fn find_wires<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     for (wire, resting) in [(Wire::Clock, Levels::HIGH), (Wire::Sync, Levels::HIGH), (Wire::Enable, Levels::LOW)] {
         match board.levels(wire) {
@@ -260,7 +260,7 @@ fn measure_frames<B: LoopedBoard>(board: &mut B, counts: &mut Counts) -> Result<
     measure_latch(board, ["latch_earliest_cycles", "latch_spread_cycles"], counts, refuse_inputs)
 }
 
-/// Measures when frames are latched; `meanwhile` is called between two of them.
+/// Measures when frames are latched; `meanwhile` is called between frames.
 fn measure_latch<B: LoopedBoard>(
     board: &mut B,
     [earliest, spread]: [&str; 2],
@@ -285,7 +285,7 @@ fn measure_adc<B: LoopedBoard>(board: &mut B, counts: &mut Counts) {
         let found_mv = board.loop_mv(driven_mv);
         counts.say(board, name, found_mv, Some((driven_mv - LOOP_TOLERANCE_MV, driven_mv + LOOP_TOLERANCE_MV)));
     }
-    // The monitor of an amplifier at 0 V, which the tick reads from now on.
+    // The monitor of an amplifier at 0 V, read by the tick from now on.
     board.loop_mv(B::MONITOR_ZERO_MV);
 }
 
@@ -309,7 +309,7 @@ fn measure_ticks<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Co
     measure_latch(board, names, counts, |board| load.round(board).map(drop))
 }
 
-/// Says the ticks that were counted while `work` ran: their histogram, the late ones, and the longest so far.
+/// Prints the counts of ticks while `work` ran: their histogram, the late ones, and the longest so far.
 fn counting<B: LoopedBoard>(
     board: &mut B,
     load: &mut Load,
@@ -352,7 +352,7 @@ fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Cou
     Ok(())
 }
 
-/// Exchanges blocks until the host is silent, and then waits for a line, which says that it listens for text again.
+/// Exchanges blocks until the host is silent, and then waits for a line, which signals that the host reads text again.
 fn exchange_blocks<B: LoopedBoard>(board: &mut B, load: &mut Load, test: &mut LineTest) -> Result<(), Stop> {
     let (first_byte_ticks, last_byte_ticks) = (board.board().ticks(FIRST_BYTE_S), board.board().ticks(LAST_BYTE_S));
     load.round(board)?;
