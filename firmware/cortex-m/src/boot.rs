@@ -4,9 +4,9 @@ use cortex_m::Peripherals;
 
 /// Permission to make the parts of a tick, and to give the tick to its interrupt.
 ///
-/// A program has one, which [`Boot::take`] returns. Constructors of the tick's parts borrow it, and
-/// [`TickOwner::give`](crate::TickOwner::give) takes it. So once the interrupt runs, no code without `unsafe` can replace
-/// the tick, or make a second part that drives the same registers.
+/// A program has one, returned by [`Boot::take`]. Constructors of the tick's parts borrow it, and
+/// [`TickOwner::give`](crate::TickOwner::give) consumes it. Once the interrupt runs, no code without `unsafe` can
+/// replace the tick, or create a second part that drives the same registers.
 pub struct Boot(());
 
 impl Boot {
@@ -19,7 +19,7 @@ impl Boot {
     }
 }
 
-/// Panics where a static would be taken twice, which cannot happen. A panic sets the output to zero and resets.
+/// Panics if a static would be taken twice, which cannot happen. A panic sets the output to zero and resets.
 #[allow(clippy::panic, clippy::missing_panics_doc, reason = "there is nothing to go on with")]
 pub fn never() -> ! {
     panic!("a static was taken twice")

@@ -1,4 +1,4 @@
-//! Panics, faults, and memory that outlasts a reset.
+//! Panics, faults, and memory that survives a reset.
 
 #[cfg(target_arch = "arm")]
 use core::arch::asm;
@@ -18,9 +18,9 @@ pub mod parts {
     pub use frixel_drivers::fault_record::{FaultRecord, Text};
 }
 
-/// How a chip begins and ends a start.
+/// The start and the end of a chip's run.
 pub trait Chip: Sync {
-    /// The cause of the last reset, which this forgets. `ram_survived` says whether RAM has kept its content.
+    /// Returns the cause of the last reset, and clears it. `ram_survived` states whether RAM has kept its content.
     fn reset_cause(ram_survived: bool) -> ResetCause;
 
     /// Sets the output to zero until the reset ([`Processor::zero_output_for_good`]).
@@ -32,7 +32,7 @@ pub trait Chip: Sync {
     }
 }
 
-/// A chip as [`Ending`] takes it.
+/// A chip as required by [`Ending`].
 pub struct CortexM<C>(pub C);
 
 impl<C: Chip> Processor for CortexM<C> {
@@ -49,12 +49,13 @@ impl<C: Chip> Processor for CortexM<C> {
     }
 }
 
-/// Defines the handlers of panics, hard faults and interrupts without a handler for the [`Chip`] `$chip`, a unit struct:
-/// they set the output to zero, store the reason, and reset ([`frixel_board::fault`]). Defines `last_reset`, too, with
-/// which the next start takes the reason. The board's linker script places `.uninit` where the start-up code clears
-/// nothing.
+/// Defines the handlers of panics, hard faults and interrupts without a handler for the [`Chip`] `$chip`, a unit
+/// struct. They set the output to zero, store the reason, and reset ([`frixel_board::fault`]). Also defines
+/// `last_reset`, with which the next start takes the reason. The board's linker script places `.uninit` where the
+/// start-up code clears nothing.
 ///
-/// `nmi: $is_harmless` adds a handler of non-maskable interrupts, which are a fault unless that function returns `true`.
+/// `nmi: $is_harmless` adds a handler of non-maskable interrupts, which are a fault unless that function returns
+/// `true`.
 #[macro_export]
 macro_rules! fault_handlers {
     ($chip:ident, nmi: $is_harmless:path) => {
@@ -76,7 +77,7 @@ macro_rules! fault_handlers {
         static ENDING: $crate::fault::parts::Ending<$crate::fault::CortexM<$chip>> =
             $crate::fault::parts::Ending::new($crate::fault::CortexM($chip), &RECORD);
 
-        /// Takes the cause of the last reset and the stored fault, and clears both. To be called once in each start.
+        /// Takes the cause of the last reset and the stored fault, and clears both. Call this once in each start.
         pub fn last_reset(text: &'static mut $crate::fault::parts::Text) -> $crate::fault::parts::LastReset {
             let record = $crate::outlasting(&RECORD);
             let cause = <$chip as $crate::fault::Chip>::reset_cause(record.has_outlasted_reset());
@@ -113,7 +114,7 @@ pub fn end_nmi<P: Processor>(ending: &Ending<P>) -> ! {
     })
 }
 
-/// The frame that the processor stores for an exception, without registers of the FPU.
+/// The exception frame of the processor, without FPU registers.
 #[repr(C)]
 pub struct ExceptionFrame {
     registers: [u32; 5],
@@ -131,9 +132,9 @@ unsafe extern "C" {
     static _stack_start: u32;
 }
 
-/// Defines the handler of hard faults, bus faults included, for the [`Ending`] in a static. The stack may be exhausted,
-/// so the handler first switches to a stack of its own, whose top is the symbol `_fault_stack_start` of the board's
-/// linker script.
+/// Defines the handler of hard faults (including bus faults), for the [`Ending`] in a static. The stack may be
+/// exhausted, so the handler first switches to its own stack, whose top is the symbol `_fault_stack_start` of the
+/// board's linker script.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! hard_fault_handler {
@@ -179,7 +180,7 @@ pub unsafe fn end_hard_fault<P: Processor>(ending: &Ending<P>, frame: *const Exc
     })
 }
 
-/// `CFSR` and `BFAR`, which an `ARMv6-M` does not have.
+/// `CFSR` and `BFAR`, which an `ARMv6-M` lacks.
 #[cfg_attr(not(armv6m), allow(clippy::unnecessary_wraps, reason = "on an ARMv6-M there are none"))]
 fn status() -> Option<(u32, u32)> {
     #[cfg(not(armv6m))]
@@ -193,8 +194,8 @@ fn status() -> Option<(u32, u32)> {
 }
 
 /// Returns a place that the start-up code does not clear, such as a static in the section `.uninit`. Its initialiser is
-/// never written, so the compiler must not conclude from it what the place holds. Put atomics of integers there only,
-/// of which every content is valid.
+/// never written, so the compiler must not assume the initial content. Use it only for atomic integers, for which every
+/// content is valid.
 pub fn outlasting<T: Sync>(place: &'static T) -> &'static T {
     #[cfg(target_arch = "arm")]
     // SAFETY: no instruction. For all that the compiler knows, it writes the place.

@@ -1,9 +1,9 @@
 //! A guard region below the stack, set up in the memory protection unit.
 //!
-//! For boards whose stack lies at the bottom of RAM, and whose RAM begins at `0x2000_0000`. Below the STM32's RAM lie
-//! unused addresses, and the option bytes of the flash, where a write may not fault; on the emulated board, nothing
-//! below RAM faults. With the guard, an overflow faults whatever the size of the frame. The guard is disabled in the
-//! hard fault's handler, which has a stack of its own (PM0214, "Memory protection unit").
+//! For boards whose stack is at the bottom of RAM, with RAM starting at `0x2000_0000`. Below the STM32's RAM are unused
+//! addresses, and the option bytes of the flash, where a write may not fault; on the emulated board, nothing below RAM
+//! faults. With the guard, an overflow faults for any frame size. The guard is disabled in the hard fault's handler,
+//! which has its own stack (PM0214, "Memory protection unit").
 
 use cortex_m::asm;
 use cortex_m::peripheral::MPU;
@@ -49,7 +49,7 @@ unsafe fn set_region(mpu: &mut MPU) {
 }
 
 /// Sets the region to read-only and no execution: an `ARMv8-M` cannot forbid reads, and a stack overflows with a write.
-/// Compiled, not run (`ARMv8-M` Architecture Reference Manual, `MPU_RBAR` and `MPU_RLAR`, unread).
+/// Compiled, but not run (`ARMv8-M` Architecture Reference Manual, `MPU_RBAR` and `MPU_RLAR`, unread).
 ///
 /// # Safety
 /// The guard is not memory of this program.

@@ -1,11 +1,11 @@
-//! What every board with a Cortex-M needs unsafe code for. Beside this crate, only the boards' own crates have any.
+//! The unsafe code that all Cortex-M boards share. Besides this crate, only the boards' own crates contain unsafe code.
 //!
-//! - [`TickOwner`]: the tick, which its interrupt owns, declared by [`tick_interrupt!`]; and [`Boot`], the token with
-//!   which it is given;
-//! - [`Owned`]: any other value that an interrupt handler owns;
+//! - [`TickOwner`]: the tick, owned by its interrupt and declared by [`tick_interrupt!`]; and [`Boot`], the token for
+//!   giving it;
+//! - [`Owned`]: any other value owned by an interrupt handler;
 //! - [`fault_handlers!`]: the handlers of panics, hard faults and interrupts without a handler, and the record of the
 //!   last fault;
-//! - [`guard`]: makes a stack overflow a fault;
+//! - [`guard`]: turns a stack overflow into a fault;
 //! - [`outlasting`]: a place that the start-up code does not clear;
 //! - [`runs_from_ram!`]: an image that runs from RAM;
 //! - [`CycleDelay`]: waits by the core's clock.

@@ -1,4 +1,4 @@
-//! Values that an interrupt handler owns.
+//! Values owned by an interrupt handler.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
@@ -8,7 +8,7 @@ use cortex_m::interrupt;
 
 use crate::Boot;
 
-/// Holds a value that the main program gives to one interrupt handler.
+/// Holds a value given by the main program to one interrupt handler.
 pub struct Owned<T> {
     is_given: AtomicBool,
     value: UnsafeCell<MaybeUninit<T>>,
@@ -25,11 +25,12 @@ impl<T> Owned<T> {
         Self { is_given: AtomicBool::new(false), value: UnsafeCell::new(MaybeUninit::uninit()) }
     }
 
-    /// Gives the value to the handler. `None`, and nothing is given, if the handler has one already: it may be using it.
+    /// Gives the value to the handler. Returns `None`, without giving it, if the handler already has one and may be
+    /// using it.
     #[must_use = "a handler that has a value keeps it"]
     pub fn give(&self, value: T) -> Option<()> {
-        // Without interrupts, so that no other call comes between the test and the end: an ARMv6-M has no atomic
-        // exchange. The other core of a chip with two is never started.
+        // Without interrupts, so that no other call comes between the test and the end, since an ARMv6-M has no atomic
+        // exchange. The second core of a dual-core chip is never started.
         interrupt::free(|_| {
             if self.is_given.load(Ordering::Relaxed) {
                 return None;
@@ -63,7 +64,7 @@ impl<T> Owned<T> {
     /// Returns the value to the handler; `None` before it was given.
     ///
     /// # Safety
-    /// Only the handler that owns the value calls this, once in each run, and keeps no reference beyond that run.
+    /// Only the handler that owns the value calls this, once per run, and keeps no reference beyond that run.
     #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
     pub unsafe fn get(&self) -> Option<&mut T> {
         // SAFETY: it was given, and is not written again. A handler does not interrupt itself, so this is the only
@@ -72,8 +73,8 @@ impl<T> Owned<T> {
     }
 }
 
-/// Returns a pointer whose value the compiler does not know. Otherwise it may write the address, as a constant, into every
-/// function of the tick, which takes an `ARMv6-M` 500 bytes more than a register.
+/// Returns a pointer whose value is unknown to the compiler. Otherwise it may write the address, as a constant, into
+/// every function of the tick, which costs an `ARMv6-M` 500 bytes more than a register.
 #[inline]
 fn unnamed<T>(pointer: *mut T) -> *mut T {
     #[cfg(target_arch = "arm")]

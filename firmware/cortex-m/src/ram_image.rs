@@ -5,10 +5,10 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::asm;
 use cortex_m::peripheral::SCB;
 
-/// Lets an image run from RAM. Defines `move_vectors`, and the function that copies code and constants before all else,
-/// from `__sicode` to what lies between `__scode` and `__ecode`; these are symbols of the board's linker script.
-/// `$vectors` is the number of exceptions, with the initial stack pointer, and interrupts. The linker script aligns the
-/// section `.vectors`, where the table is while the image runs, as the processor wants it.
+/// Lets an image run from RAM. Defines `move_vectors`, and the function that first copies code and constants from
+/// `__sicode` to the range from `__scode` to `__ecode`; these are symbols of the board's linker script. `$vectors` is
+/// the number of exceptions (including the initial stack pointer) and interrupts. The linker script aligns the section
+/// `.vectors`, where the table is while the image runs, as required by the processor.
 #[macro_export]
 macro_rules! runs_from_ram {
     ($vectors:expr) => {
@@ -53,10 +53,10 @@ macro_rules! runs_from_ram {
     };
 }
 
-/// Copies the vector table, and lets the processor take its vectors from the copy.
+/// Copies the vector table, and switches the processor to the copy.
 ///
 /// # Safety
-/// `from` has all vectors of the processor, and `to` is aligned as it wants a vector table.
+/// `from` has all vectors of the processor, and `to` is aligned as required for a vector table.
 pub unsafe fn move_vectors<const N: usize>(scb: &mut SCB, from: &[u32; N], to: &'static [AtomicU32; N]) {
     for (to, from) in to.iter().zip(from) {
         to.store(*from, Ordering::Relaxed);

@@ -1,11 +1,11 @@
-//! The tick, which its interrupt owns.
+//! The tick, owned by its interrupt.
 
 use frixel_board::hardware::Hardware;
 use frixel_board::tick::Tick;
 
 use crate::{Boot, Owned};
 
-/// The tick of a program, in a static beside the handler that runs it.
+/// The tick of a program, in a static next to the handler that runs it.
 pub struct TickOwner<H: Hardware>(Owned<Tick<H>>);
 
 impl<H: Hardware> TickOwner<H>
@@ -18,7 +18,7 @@ where
         Self(Owned::new())
     }
 
-    /// Gives the tick to its interrupt. There is one [`Boot`], so a program has one tick, which nothing replaces.
+    /// Gives the tick to its interrupt. There is only one [`Boot`], so a program has one tick, which is never replaced.
     #[inline]
     pub fn give(&self, boot: Boot, tick: Tick<H>) {
         // SAFETY: the place is private, and nothing else here gives.
