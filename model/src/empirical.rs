@@ -54,7 +54,7 @@ pub enum LawError {
         /// The number of points.
         found: usize,
     },
-    /// The exponent below the first point is outside of [`EmpiricalLaw::EXPONENTS`].
+    /// The exponent below the first point is outside [`EmpiricalLaw::EXPONENTS`].
     Exponent {
         /// The exponent.
         found: f32,
@@ -79,7 +79,7 @@ pub enum LawError {
         /// Voltage of the last point, V rms.
         max: f32,
     },
-    /// The friction at the largest voltage is outside of [`EmpiricalLaw::FRICTIONS_N`].
+    /// The friction at the largest voltage is outside [`EmpiricalLaw::FRICTIONS_N`].
     Friction {
         /// The friction, N.
         found: f32,

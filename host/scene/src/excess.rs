@@ -262,7 +262,7 @@ fn has_fraction(layer: &Layer) -> bool {
 fn note(side: &Side, ending: &str) -> String {
     match &side.mistake {
         FitMistake::AboveReach { asking, target_n, reference, reach_n, .. } => {
-            format!("{asking} up to {target_n} N {reference}, and at most {reach_n} N can be reached{ending}")
+            format!("{asking} up to {target_n} N {reference}, but at most {reach_n} N can be reached{ending}")
         }
         FitMistake::BelowNatural { asking, target_n, reference, natural_n, .. } => {
             format!("{asking} down to {target_n} N {reference}, below the natural friction of {natural_n} N{ending}")

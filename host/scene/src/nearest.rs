@@ -33,7 +33,7 @@ const SYNONYMS: [(&str, &str, &str); 22] = [
     ("switch", "button", ", with a click that a finger feels when it slides in"),
     ("dial", "spokes", ", whose notches a finger counts as it goes round"),
     ("knob", "spokes", ", whose notches a finger counts as it goes round"),
-    ("velvet", "direction", ", whose friction is another one way than the other"),
+    ("velvet", "direction", ", whose friction depends on the direction"),
     ("ratchet", "direction", ", with `blend = \"multiply\"` above a `grating`"),
     ("sound", "vibration", ", which is felt and not heard"),
     ("text", "bitmap", ", with a picture of the text"),

@@ -29,10 +29,7 @@ pub fn check_toml(text: &str) -> Result<(), (usize, FileMistake)> {
         (_, found) if found <= NESTING_MAX => Ok(()),
         (offset, found) => {
             let advice = "no field needs more than four";
-            Err((
-                offset,
-                FileMistake::too_much("tables, lists and parts of a name in one another", found, NESTING_MAX, advice),
-            ))
+            Err((offset, FileMistake::too_much("nested tables, lists and parts of a name", found, NESTING_MAX, advice)))
         }
     }
 }

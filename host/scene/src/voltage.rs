@@ -118,7 +118,7 @@ impl Voltage {
             } else {
                 log.note(
                     place,
-                    format!("drive: it ends at {measured_v_rms} V rms, up to which this finger was measured"),
+                    format!("drive: limited to {measured_v_rms} V rms, the largest measured voltage of this finger"),
                 );
             }
             self.max_v_rms = measured_v_rms;

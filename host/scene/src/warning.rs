@@ -60,7 +60,7 @@ pub enum Warning {
     /// The rms voltage exceeds what the peak limit of the board or screen allows.
     #[error(
         "`voltage_max_v_rms = {found}` exceeds what the {whose} allows: at most {max_v_rms:.1} V rms are driven, \
-         by its limit of {max_v_peak} V peak{why} and a peak of {peak_per_rms:.3} times the rms"
+         given its limit of {max_v_peak} V peak{why} and a crest factor of {peak_per_rms:.3}"
     )]
     RmsOutOfReach {
         /// The rms voltage of the scene and its screen, V.

@@ -224,7 +224,7 @@ test("a voltage that the board does not let through is a warning at its line, co
   const warning = page.locator("#problems li.warning");
   await warning.waitFor();
   assert.match(await warning.innerText(), /^line 3\s*`voltage_max_v_rms = 1000` exceeds what the board allows/);
-  assert.match(await warning.innerText(), /211\.0 V rms .* limit of 220 V peak and a peak of 1\.043 times the rms/);
+  assert.match(await warning.innerText(), /211\.0 V rms .* limit of 220 V peak and a crest factor of 1\.043/);
   await page.click("#toggle-drawer");
   const count = page.locator("#mistakes");
   assert.deepEqual([await count.innerText(), await count.getAttribute("aria-label")], ["1", "1 warning"]);

@@ -13,7 +13,7 @@ before(async () => {
 });
 
 /** What is said of friction, or of a place inside the layer, where a layer has gone elsewhere. */
-const FELT = /\d of the reach\), and at|lies \d+ mm outside of its `region`|the picture is stretched by/;
+const FELT = /\d of the reach\), and at|lies \d+ mm outside its `region`|the picture is stretched by/;
 
 /** Scenes of what the gallery does not show, by name. */
 const MORE = {

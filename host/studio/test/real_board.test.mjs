@@ -242,7 +242,7 @@ test("a scene for another board and a draft are refused, and cannot be armed", a
   await write(page, CONSTANT);
   await armable(page);
   for (const [text, sentence] of [
-    [FOUR_LAYERS, /4 layers, and the board takes 3/],
+    [FOUR_LAYERS, /4 layers, but the board supports 3/],
     [CONSTANT.replace(/friction_(\w+) = .*/, "friction_n = 9"), /does not play this draft/],
   ]) {
     await write(page, text);

@@ -34,7 +34,7 @@ test("bad scenes are sentences", async () => {
       'version = 1\n[[layer]]\nkind = "bitmap"\npicture = "../../etc/passwd"\nx_mm = 0\ny_mm = 0\nwidth_mm = 9\n',
       /passwd/,
     ],
-    [`version = 1\n${'[[layer]]\nkind = "constant"\nfriction_n = 0.3\n'.repeat(2000)}`, /the board takes 64/],
+    [`version = 1\n${'[[layer]]\nkind = "constant"\nfriction_n = 0.3\n'.repeat(2000)}`, /the board supports 64/],
   ]) {
     await page.evaluate((text) => (studioPage.editor.text = text), text);
     await assertSays(page, expected);

@@ -278,8 +278,8 @@ mod tests {
         assert!(plan(&format!("[parameters]\n\"{}\" = [1]\n", path(64))).is_ok());
         for (rest, says) in [
             (format!("[parameters]\n\"{}\" = [1]\n", path(5_000)), "is a path of 5000 parts: give the path of a field"),
-            (format!("[parameters]\n{} = [1]\n", path(1_000_000)), "in one another, and at most 64 are read"),
-            (format!("[parameters]\na = {}\n", "[".repeat(100_000)), "in one another, and at most 64 are read"),
+            (format!("[parameters]\n{} = [1]\n", path(1_000_000)), "parts of a name, and at most 64 are read"),
+            (format!("[parameters]\na = {}\n", "[".repeat(100_000)), "parts of a name, and at most 64 are read"),
             (format!("#{}\n", "#".repeat(5 << 20)), "bytes in this text, and at most 4194304 are read"),
             (format!("{} = 1\n", "a".repeat(100_000)), "unknown field"),
         ] {

@@ -81,7 +81,7 @@ fn law(fields: &mut Fields, log: &mut Log) -> Option<MeasuredLaw> {
     }
     let outside = law.points.iter().zip(&law.intervals_n).find(|((_, n), (low, high))| !(low..=high).contains(&n));
     if let Some(((_, friction_n), (low, high))) = outside {
-        let reason = format!("a friction of {friction_n} N is outside of its interval, {low} to {high} N");
+        let reason = format!("a friction of {friction_n} N is outside its interval, {low} to {high} N");
         log.add(intervals_place, FieldMistake::Law { reason });
         return None;
     }

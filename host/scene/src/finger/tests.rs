@@ -1,4 +1,4 @@
-//! Tests of finger profiles: what is read, what is refused, and what is written.
+//! Tests of reading, refusing and writing finger profiles.
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use proptest::prelude::*;

@@ -22,12 +22,11 @@ const SEED: FieldSpec =
     FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")), Number(0.0), "seed of the random waves");
 const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "shortest wavelength");
 const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "longest wavelength");
-const LOW: AmountFields = amount!("low", Required, "smallest friction");
+const LOW: AmountFields = amount!("low", Required, "least friction");
 const HIGH: AmountFields = amount!(
     "high",
     Required,
-    "largest friction. Noise is mostly near the middle: its standard deviation is \
-     an eighth of the range"
+    "largest friction. Noise is mostly near the middle: its standard deviation is an eighth of the range"
 );
 
 /// `kind = "noise"`.

@@ -46,7 +46,7 @@ pub enum FieldMistake {
         table: String,
     },
     /// A value has another type than expected.
-    #[error("`{field}` has to be {expected}, and this is {found}")]
+    #[error("`{field}` must be {expected}, found {found}")]
     WrongType {
         /// The field.
         field: &'static str,
@@ -56,7 +56,7 @@ pub enum FieldMistake {
         found: &'static str,
     },
     /// A value is not a table.
-    #[error("`{field}` has to be a table, and this is {found}: write {write}")]
+    #[error("`{field}` must be a table, found {found}: write {write}")]
     NotATable {
         /// The field.
         field: &'static str,
@@ -67,7 +67,7 @@ pub enum FieldMistake {
     },
     /// A value is not a list of tables.
     #[error(
-        "`{field}` has to be a list of tables, and this is {found}: write `[[{field}]]`, in double brackets, before the \
+        "`{field}` must be a list of tables, found {found}: write `[[{field}]]`, in double brackets, before the \
          fields of each"
     )]
     NotTables {
@@ -145,7 +145,7 @@ pub enum FieldMistake {
         other: &'static str,
     },
     /// A number is not whole.
-    #[error("`{field} = {}` has to be a whole number: round it", Shown(*.found))]
+    #[error("`{field} = {}` must be a whole number: round it", Shown(*.found))]
     NotWhole {
         /// The field.
         field: &'static str,
@@ -169,7 +169,7 @@ pub enum FieldMistake {
         reason: String,
     },
     /// A date is not `YYYY-MM-DD`.
-    #[error("`date = \"{}\"` is not a day: write it as \"YYYY-MM-DD\"", brief(.found))]
+    #[error("`date = \"{}\"` is not a date: write it as \"YYYY-MM-DD\"", brief(.found))]
     Date {
         /// The date, as written.
         found: String,
@@ -208,7 +208,7 @@ pub enum FieldMistake {
     },
     /// The speeds of a curve are not in ascending order.
     #[error(
-        "the speeds of a curve have to rise, by 0.02 mm/s or more from each to the next, and {after} comes after \
+        "the speeds of a curve must ascend in steps of 0.02 mm/s or more, but {after} follows \
          {before}: sort them"
     )]
     SpeedsDoNotRise {
@@ -219,8 +219,8 @@ pub enum FieldMistake {
     },
     /// Stripes or rings move faster than a board supports.
     #[error(
-        "at {found_mm_per_s} mm/s and a wavelength of {wavelength_mm} mm, more than {max_hz} waves pass a place in a second: \
-         write at most {max_mm_per_s} mm/s, either way"
+        "at {found_mm_per_s} mm/s and a wavelength of {wavelength_mm} mm, more than {max_hz} waves per second pass \
+         a place: write at most {max_mm_per_s} mm/s, either way"
     )]
     DriftsTooFast {
         /// Speed of the waves, mm/s.

@@ -52,7 +52,7 @@ pub enum FileMistake {
         advice: &'static str,
     },
     /// Files include each other in a cycle.
-    #[error("{}: take {} out", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
+    #[error("{}: remove {}", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
     IncludedByItself {
         /// The files: each includes the next one, and the last includes the first.
         circle: Vec<String>,
@@ -111,7 +111,7 @@ pub enum FileMistake {
         other: String,
     },
     /// Layers of two files have the same name.
-    #[error("a layer \"{name}\" is in {file} and in {other}: give one of them another name")]
+    #[error("a layer \"{name}\" is in {file} and in {other}: rename one of them")]
     NameTwice {
         /// The name.
         name: String,

@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum FitMistake {
     /// The scene has more of something than the board supports.
-    #[error("this is number {number} of the scene's {what}, and a board takes {max}: leave some out")]
+    #[error("this is number {number} of the scene's {what}, but a board supports at most {max}: remove some")]
     TooMany {
         /// The kind of thing.
         what: &'static str,
@@ -75,7 +75,7 @@ pub enum FitMistake {
     },
     /// The target friction of a layer is less than the friction at no voltage.
     #[error(
-        "{asking} down to {target_n} N {reference}, and a drive can only add to the finger's natural friction of \
+        "{asking} down to {target_n} N {reference}, but a drive can only add to the finger's natural friction of \
          {natural_n} N: {cure}, or write `saturate = true` under [drive] to have it clamped"
     )]
     BelowNatural {
@@ -92,7 +92,7 @@ pub enum FitMistake {
     },
     /// The scene has more layers than the board takes.
     #[error(
-        "the scene has {count} layers{}, and the board takes {max}: leave some out or draw them into one picture",
+        "the scene has {count} layers{}, but the board supports {max}: remove some or draw them into one picture",
         if *.has_copies { ", each copy of a `repeat` counted" } else { "" }
     )]
     TooManyLayers {

@@ -74,7 +74,7 @@ fn one_mistake_is_one_sentence() {
     }
 }
 
-/// Every word that a scenario may have stands in its documentation.
+/// Every word of a scenario is in its documentation.
 #[test]
 #[allow(clippy::disallowed_methods, reason = "the test reads the documentation")]
 fn the_documentation_has_every_word() {

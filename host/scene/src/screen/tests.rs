@@ -1,4 +1,4 @@
-//! Tests of screens: what is read and what is refused.
+//! Tests of reading and refusing screens.
 
 use super::*;
 

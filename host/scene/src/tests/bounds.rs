@@ -17,7 +17,7 @@ use crate::target_range::TargetRange;
 const CELLS: usize = 200;
 /// Places along each side of a cell.
 const PLACES: usize = 33;
-/// Less friction than this is not compared, N.
+/// Friction below which excesses are not compared, N.
 const FRICTION_MIN_N: f64 = 1e-4;
 /// Largest excess of a bound over the friction found, relative to it. Stacks with a picture are not compared: its bound
 /// does not depend on its samples.
@@ -110,7 +110,7 @@ fn no_stack_asks_for_more_than_its_bound() {
     }
 }
 
-/// What the compiler finds on the screen, and reports, is at most the bound, and close to it.
+/// The range reported by the compiler for the screen is at most the bound, and close to it.
 #[test]
 fn stacks_come_close_to_their_bounds() {
     let mut above = Vec::new();

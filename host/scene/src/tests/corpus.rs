@@ -1,4 +1,4 @@
-//! What the compiler says about scenes, and about wrong ones above all: the pages in `tests/corpus`.
+//! Tests the compiler's diagnostics of valid and, above all, invalid scenes: the pages in `tests/corpus`.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use frixel_testkit::corpus::{self, Case};
 use super::*;
 use crate::{FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Screen, Warning};
 
-/// The files of a case, those that every case finds, and the scene among them.
+/// The files of a case, the files shared by all cases, and the scene among them.
 struct Inputs {
     name: String,
     text: Vec<u8>,
@@ -54,7 +54,7 @@ fn hold(folder: &str, mut answer: impl FnMut(&Case) -> String) {
     }
 }
 
-/// Whatever is met in a corpus, by the name of its variant.
+/// The variants covered by a corpus, by name.
 #[derive(Default)]
 struct Met(BTreeSet<&'static str>);
 
@@ -85,7 +85,7 @@ variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVo
 variants!(optimisation_name, OPTIMISATIONS, Optimisation: Covered Idle Flat Folded Cropped Shared Bitmap);
 
 impl Met {
-    /// Takes what is said, and makes a line of each diagnostic.
+    /// Records diagnostics, and formats each as a line.
     fn lines(&mut self, diagnostics: &[Diagnostic]) -> String {
         self.0.extend(diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
             Message::Mistake(Mistake::Field(mistake)) => Some(field_name(mistake)),

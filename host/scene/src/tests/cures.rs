@@ -1,4 +1,4 @@
-//! Applies what messages about friction out of reach propose, and checks that it helps.
+//! Applies the advice in messages about friction out of reach, and checks that it helps.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn raised(drive: &[(&str, f64)], limits: &[(String, f64)]) -> String {
     lines.chain(limits.iter().map(|(field, to)| format!("{field} = {to}\n"))).collect()
 }
 
-/// More volts are proposed only where they help, and just so many as help: within the limits of board, screen and
+/// More volts are proposed only where they help, and only as many as necessary: within the limits of board, screen and
 /// measurement, and not for fractions.
 /// Head, limits of the drive, crest, and the limits that the message proposes to raise.
 type Case<'c> = (&'c str, &'c [(&'c str, f64)], &'c str, &'c [&'c str]);

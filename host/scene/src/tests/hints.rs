@@ -1,4 +1,4 @@
-//! Names and numbers of layers, mistakes that layers share, and what drafts and gains keep to.
+//! Names and numbers of layers, shared mistakes of layers, and limits of drafts and gains.
 
 use super::*;
 use crate::{DiagnosticKind, LayerTitle, Warning};
@@ -109,7 +109,7 @@ fn gains_that_lead_out_of_reach_are_known_with_their_range() {
     assert!(clamped.starts_with("layer 1 \"track\" and layer 2 \"detent\" would ask for up to 0.14"), "{clamped}");
 }
 
-/// Of what is said about several layers, none has the number.
+/// Diagnostics about several layers have no layer number.
 #[test]
 fn a_diagnostic_has_the_number_of_its_layer() {
     let layers_of = |text: &str| {

@@ -92,7 +92,7 @@ fn a_black_icon_on_a_transparent_ground_is_felt_over_white() {
         ("invert = true", 10, 10, true),
         ("transparent = \"white\"", 0, 10, false),
         ("transparent = \"white\"\ninvert = true", 10, 0, false),
-        // Black leaves what is below.
+        // Black leaves the layers below unchanged.
         ("transparent = \"white\"\ninvert = true\nblend = \"max\"", 10, 3, false),
         ("transparent = \"white\"\ninvert = true\nblend = \"add\"\nwhite_fraction = 0.5", 8, 3, false),
     ] {

@@ -1,4 +1,4 @@
-//! Tests of the screen and finger of a scene: which one counts, what is refused, and what is warned of.
+//! Tests of the screen and finger of a scene: precedence, refusals and warnings.
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use super::*;

@@ -51,7 +51,7 @@ fn is_grammar(diagnostic: &Diagnostic) -> bool {
 #[track_caller]
 pub(super) fn check_agrees(text: &str, mistakes: &[Diagnostic]) {
     let Some(scene) = json(text) else { return };
-    // What `[defaults]` and other files give to a layer only the parser knows.
+    // Only the parser knows the fields that `[defaults]` and other files give to a layer.
     let is_completed = ["defaults", "include"].iter().any(|table| scene.get(table).is_some());
     if mistakes.is_empty() {
         assert!(schema_takes(&scene), "the parser takes it, the schema does not:\n{text}");
