@@ -22,9 +22,9 @@ pub struct LawPoint {
 /// 1. Power laws through the points: below the first one, `x ~ V^exponent`; between two, the power law through both.
 ///    A single point and an exponent are a power law.
 /// 2. `x_top` is the friction at the largest voltage by step 1, rounded down to an `f32`. The *knots* of the law are
-///   127 numbers, eight per octave: the number whose `f32` bit pattern is that of `x_top` plus 1, and those whose
-///   patterns are 1 to 126 times 2^20 less. At the knots, the law is that of step 1; between two knots, it is the power
-///   law through both.
+///    127 numbers, eight per octave: the number whose `f32` bit pattern is that of `x_top` plus 1, and those whose
+///    patterns are 1 to 126 times 2^20 less. At the knots, the law is that of step 1; between two knots, it is the
+///    power law through both.
 ///
 /// A bend at a point is thus rounded off within an eighth of an octave of friction, and each row of the board's
 /// [`InverseTable`](crate::InverseTable) lies within one power law, so that its error can be proven. Below the lowest

@@ -7,7 +7,7 @@
 //! 2. the stack is guarded, and the cause of the last reset is read and logged;
 //! 3. the clocks, and the enable behind its one-shot;
 //! 4. [`prepare`] configures the DAC, which has the settings of the last start until then. It therefore precedes the
-//!   search of the flash, which takes up to 0.2 s;
+//!    search of the flash, which takes up to 0.2 s;
 //! 5. [`describe`] reads the stored limits;
 //! 6. [`Parts::start`] starts the tick, and the watchdog last, because only the main loop feeds it.
 

@@ -64,7 +64,7 @@ fn every_output_of_a_draft_says_so() {
     let svg = fs::read_to_string(out.join("felt.svg")).unwrap();
     assert!(svg.contains("scene.toml, draft, simulated"));
     let summary = run(folder.path(), &["play", "scene.toml", "--seconds", "0.3"]);
-    assert!(text(&summary.stdout).starts_with("  draft "), "{}", text(&summary.stdout));
+    assert!(text(&summary.stdout).contains("\n  draft "), "{}", text(&summary.stdout));
 
     fs::write(folder.path().join("scene.toml"), IN_REACH).unwrap();
     let play = run(folder.path(), &["play", "scene.toml", "--seconds", "0.3"]);

@@ -194,7 +194,9 @@ fn a_drawn_finger_is_felt_and_the_board_does_not_know_it() {
 #[test]
 fn the_summary_says_which_world_was_simulated() {
     let folder = TempDir::new().unwrap();
-    let play = |options: &[&str]| succeed(folder.path(), &[&["play", &brick(), "--seconds", "0.1"], options].concat());
+    let play = |options: &[&str]| {
+        succeed(folder.path(), &[&["play", &brick(), "--seconds", "0.1", "--verbose"], options].concat())
+    };
     let said = play(&[]);
     assert!(said.contains("  world            realistic: with load changes, noise,"), "{said}");
     assert!(said.contains("--ideal switches them off") && !said.contains("  finger "), "{said}");

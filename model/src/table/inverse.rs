@@ -67,11 +67,7 @@ impl InverseTable {
     /// Builds the same table, truncated to the rows for electric frictions up to `up_to_n`; up to there, it returns
     /// the same bits. A truncated row needs no evaluation of the closed form; it holds the voltage at the end of the
     /// table. No row is truncated if `up_to_n` is NaN, or not below the largest friction.
-    pub fn build_up_to(
-        contact: &LoadedContact<f64>,
-        voltage_max_v_rms: f64,
-        up_to_n: f32,
-    ) -> Result<Self, TableError> {
+    pub fn build_up_to(contact: &LoadedContact<f64>, voltage_max_v_rms: f64, up_to_n: f32) -> Result<Self, TableError> {
         if !(voltage_max_v_rms.is_finite() && round_down(voltage_max_v_rms) > 0.0) {
             return Err(TableError::Voltage);
         }

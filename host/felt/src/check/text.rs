@@ -7,8 +7,8 @@ use crate::judge::NAMED_MAX;
 use frixel_scene::{Origin, OutOfReach, TargetRange};
 
 impl SceneCheck {
-    /// The check as a few lines of text, each ending in a line feed: what is felt, which newtons that means, and whether
-    /// the scene fits the board. With `with_costs`, every number of bytes and cycles follows.
+    /// The check as lines of text, each ending in a line feed: what is felt, the newtons behind it, and whether the
+    /// scene fits the board. With `with_costs`, every number of bytes and cycles follows.
     pub fn summary(&self, with_costs: bool) -> String {
         let mut lines = feel::lines(&self.judgement);
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));

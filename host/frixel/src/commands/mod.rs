@@ -59,10 +59,7 @@ enum Command {
     New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
     Play(play::PlayArgs),
-    /// Report a scene's cost, reach and what can be felt of it.
-    ///
-    /// Every mistake is reported, with line and column. A scene that no board can play is refused by the number that is
-    /// exceeded.
+    /// Report every mistake of a scene, or what is felt of it, what can be reached, and whether it fits a board.
     Check(check::CheckArgs),
     /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in millinewtons.
     Preview(preview::PreviewArgs),

@@ -268,8 +268,8 @@ impl Report {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// The report as a few lines of text, each ending in a line feed. The last lines are what the finger felt and how far
-    /// that was from the reference; with `verbose`, all else comes before them.
+    /// The report as lines of text, each ending in a line feed: what the finger felt, and how far that was from the
+    /// reference. With `verbose`, everything else comes first.
     pub(crate) fn summary(&self, verbose: bool) -> String {
         let mut lines = Vec::new();
         lines.extend(self.draft.then(|| ("draft", draft_line(self.board_refuses.len()))));

@@ -24,7 +24,7 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
         let (said, _) = succeed(folder.path(), &["check", name]);
         assert!(!said.contains("stretched by"), "{said}");
         let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
-        assert!(said.contains("reference"), "{said}");
+        assert!(said.contains("  in this play     "), "{said}");
     }
     fs::create_dir(folder.path().join("sub")).unwrap();
     succeed(folder.path(), &["new", "sub/w", "--picture", "mine.png"]);

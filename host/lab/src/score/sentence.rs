@@ -61,7 +61,7 @@ impl Score {
     }
 }
 
-/// Layers in the order of the file. Copies of a layer are listed together, those first that are noticed the least surely.
+/// Layers in the order of the file, and copies of a layer by how surely they are noticed, the least first.
 fn ordered<'s>(layers: impl IntoIterator<Item = &'s LayerScore>) -> Vec<&'s LayerScore> {
     let mut layers: Vec<&LayerScore> = layers.into_iter().collect();
     let table = |layer: &LayerScore| layer.layer.number().table;
