@@ -1,6 +1,6 @@
 //! Input of the command: regular files and standard input, each up to a stated size.
 
-use std::io::{self, BufRead, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, Read};
 use std::path::Path;
 
 pub(crate) use frixel_lab::input::{Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, read_named};
@@ -15,23 +15,6 @@ pub(crate) fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
     let mut text = String::new();
     open(path, max_bytes)?.read_to_string(&mut text)?;
     Ok(text)
-}
-
-/// Reads the first bytes of a regular file of any size, at most `max_bytes` of them.
-pub(crate) fn read_head(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
-    let mut head = Vec::new();
-    open(path, u64::MAX)?.take(max_bytes).read_to_end(&mut head)?;
-    Ok(head)
-}
-
-/// Reads the last bytes of a regular file of any size, at most `max_bytes` of them.
-pub(crate) fn read_tail(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
-    let mut file = open(path, u64::MAX)?.into_inner();
-    let len = file.metadata()?.len();
-    file.seek(SeekFrom::Start(len.saturating_sub(max_bytes)))?;
-    let mut tail = Vec::new();
-    file.take(max_bytes).read_to_end(&mut tail)?;
-    Ok(tail)
 }
 
 /// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]

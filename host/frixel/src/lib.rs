@@ -5,7 +5,6 @@
 mod commands;
 mod input;
 pub mod output;
-pub mod output_file;
 mod report;
 pub mod rigs;
 pub mod scene_file;

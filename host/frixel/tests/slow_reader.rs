@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
-use frixel::output_file::Inputs;
 use frixel::rigs::Server;
+use frixel_files::Inputs;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN};
 use frixel_wire::message::{Answer, Command, FromBoard, Request};

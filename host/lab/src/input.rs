@@ -4,6 +4,7 @@
 mod file;
 
 use std::io::{self, Read};
+use std::path::Path;
 
 use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
@@ -11,6 +12,7 @@ use unicode_normalization::UnicodeNormalization;
 #[cfg(not(target_arch = "wasm32"))]
 pub use file::{open, read, read_named};
 pub use frixel_scene::TEXT_MAX_BYTES as TOML_MAX_BYTES;
+use frixel_scene::TILDE_ADVICE;
 
 /// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
 pub const PICTURE_MAX_BYTES: u64 = 64 << 20;
@@ -32,6 +34,11 @@ const HEADER_CELL_MAX_BYTES: u64 = 1024;
 /// ```
 pub fn is_same_name(one: &str, other: &str) -> bool {
     one.nfc().eq(other.nfc())
+}
+
+/// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
+pub fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
+    if path.starts_with("~") { TILDE_ADVICE } else { advice }
 }
 
 /// Refuses a table with too many columns, or with a header that has a cell of too many bytes.

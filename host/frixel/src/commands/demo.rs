@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Args;
 
 use super::error::writing;
-use crate::output_file::{Inputs, OutputFile};
+use frixel_files::{Inputs, OutputFile};
 
 use super::play::{self, PlayArgs};
 use super::terminal::print_line;
@@ -56,5 +56,5 @@ fn create(path: &Path, bytes: &[u8]) -> Result<bool> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(writing(folder))?;
     }
-    OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)
+    Ok(OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)?)
 }

@@ -5,12 +5,11 @@ use std::io;
 use std::path::Path;
 
 use anyhow::anyhow;
+pub(crate) use frixel_files::writing;
 use frixel_hil_sim::StrokeError;
+use frixel_lab::input::check_path;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, SimulationError};
-
-pub(crate) use crate::output_file::writing;
-use crate::scene_file::check_path;
 
 /// Puts what an error is about in front of it, for use in `map_err`.
 pub(crate) fn at<E: Display>(subject: impl Display) -> impl FnOnce(E) -> anyhow::Error {

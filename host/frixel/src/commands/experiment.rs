@@ -1,10 +1,10 @@
 //! What plays and experiments on a board have in common. Experiments take minutes of a person's time, so whatever can
 //! be wrong is found before they begin.
 
-use crate::output_file::Recording;
 use crate::rigs::PortLink;
 use anyhow::{Result, anyhow, bail};
 use frixel_driver::Device;
+use frixel_files::OutputFile;
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
@@ -52,11 +52,10 @@ pub(super) fn voltage(text: &str) -> Result<f64, String> {
     number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
 }
 
-/// Adds to an error that ended a recording where its rows are, if it has any.
-pub(super) fn cut_off(recording: &Recording, error: anyhow::Error) -> anyhow::Error {
+/// Adds to an error that ended a recording where its rows are, if it has any, with advice on how to keep them.
+pub(super) fn cut_off(recording: &OutputFile, advice: &str, error: anyhow::Error) -> anyhow::Error {
     if recording.is_cut_off() {
-        let (partial, advice) = (recording.partial(), recording.advice());
-        return anyhow!("{error}; what was recorded until then is in {}: {advice}", partial.display());
+        return anyhow!("{error}; what was recorded until then is in {}: {advice}", recording.partial().display());
     }
     error
 }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::error::reading;
 use crate::input::{self, Bounded};
-use crate::output_file::{Inputs, OutputFile};
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
+use frixel_files::{Inputs, OutputFile};
 use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
 
 use super::terminal::{note, note_understood};
@@ -81,16 +81,12 @@ pub(super) fn run(command: &ModelCommand) -> Result<()> {
             note_understood(args.input.as_deref().unwrap_or(Path::new("-")), summary.understood.as_deref());
             return judge(&summary);
         }
-        Err(CsvError::Write(error)) if output.is_file() => return Err(writer.error(error)),
         // Ignore a closed standard output.
         Err(CsvError::Write(error)) if error.kind() == ErrorKind::BrokenPipe => {}
-        Err(source) => {
-            let (path, stream) = match source {
-                CsvError::Write(_) => (&args.output, "standard output"),
-                CsvError::Table(_) => (&args.input, "standard input"),
-            };
-            let input = path.as_ref().map_or(stream.to_owned(), |path| path.display().to_string());
-            bail!("{input}: {source}");
+        Err(CsvError::Write(error)) => return Err(error.into()),
+        Err(CsvError::Table(error)) => {
+            let input = args.input.as_ref().map_or("standard input".to_owned(), |path| path.display().to_string());
+            bail!("{input}: {error}");
         }
     }
     Ok(())

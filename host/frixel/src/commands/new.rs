@@ -7,9 +7,9 @@ use std::path::{Component, MAIN_SEPARATOR, Path, PathBuf};
 
 use super::error::{at, reading, writing};
 use crate::input;
-use crate::output_file::{Inputs, OutputFile};
 use anyhow::{Result, bail};
 use clap::Args;
+use frixel_files::{Inputs, OutputFile};
 use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::terminal::print_line;

@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use frixel_lab::recording::{Field, Metadata, Recording};
 
 use super::error::at;
-use crate::output_file::OutputFile;
+use frixel_files::OutputFile;
 
 /// Whether a file is to be Parquet, by its name.
 pub(super) fn is_named_so(path: &Path) -> bool {
@@ -30,5 +30,5 @@ pub(super) fn write(output: &OutputFile, csv: &[u8], fields: Vec<Field>, metadat
     let recording = Recording::of_csv(metadata, csv, fields).map_err(at(&path))?;
     let mut bytes = Vec::new();
     recording.write_parquet(&mut bytes).map_err(at(&path))?;
-    output.write(&bytes)
+    Ok(output.write(&bytes)?)
 }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use crate::output::{draft_line, draw_preview_png};
-use crate::output_file::{Inputs, OutputFile};
 use anyhow::{Result, bail};
 use clap::Args;
 use frixel_felt::Preview;
 use frixel_felt::check::feel;
 use frixel_felt::judge::Advice;
+use frixel_files::{Inputs, OutputFile};
 use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile_draft;

@@ -11,8 +11,8 @@ use frixel_scene::{Scene, compile_draft};
 use super::demo;
 use super::profiles::ProfileArgs;
 use super::terminal::print_line;
-use crate::output_file::Inputs;
 use crate::report::{Subject, write};
+use frixel_files::Inputs;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {

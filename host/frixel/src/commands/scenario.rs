@@ -17,7 +17,8 @@ use super::error::of_finger;
 use crate::input;
 #[cfg(unix)]
 use crate::rigs::EmulatedRig;
-use crate::scene_file::{check_path, load};
+use crate::scene_file::load;
+use frixel_lab::input::check_path;
 
 use super::stroke::check_on_screen;
 use super::terminal::{note, print_line};

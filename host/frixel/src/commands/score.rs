@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::error::of_simulation;
 use crate::output::draw_score_svg;
-use crate::output_file::{Inputs, OutputFile, OutputFolder, commit_all};
 use anyhow::Result;
 use clap::Args;
+use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all};
 use frixel_hil_sim::Board;
 use frixel_lab::score::{Score, TrialPlan, Way};
 use frixel_play::TO_THE_END;

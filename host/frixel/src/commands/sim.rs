@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{of_finger, of_generated_stroke};
-use crate::output_file::Inputs;
 use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
 use anyhow::Result;
+use frixel_files::Inputs;
 use frixel_hil_sim::{Board, BoardMemory, FingertipConfig, OwnFinger, Person, Rig, RigConfig, Stroke, WorldOptions};
 use frixel_lab::simulate::REPEAT_PAUSE_S;
 use frixel_scene::{Scene, compile};

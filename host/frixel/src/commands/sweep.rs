@@ -20,8 +20,8 @@ use super::error::{at, writing};
 use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
-use crate::output_file::{Busy, Inputs, OutputFile, OutputFolder, commit_all};
 use crate::scene_file::gathered;
+use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all};
 
 /// Time between two tries to write a file that another process writes, and the longest time for all of them.
 const WAIT: Duration = Duration::from_millis(10);
@@ -115,8 +115,8 @@ fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
             return Ok(());
         }
         match file.write(text.as_bytes()) {
-            Err(error) if error.is::<Busy>() && begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
-            written => return written,
+            Err(Error::Busy(_)) if begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
+            written => return Ok(written?),
         }
     }
 }

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use super::error::writing;
 use crate::output::is_of_interrupted_play;
-use crate::output_file::OutputFile;
 use anyhow::Result;
+use frixel_files::OutputFile;
 use frixel_scene::{Program, printable_lines};
 
 /// Writes text to standard output. Does nothing once its reader has gone, for example `head` at its last line.
@@ -68,6 +68,6 @@ pub(super) fn note_refusals(scene: &Path, program: &Program) {
 fn unless_closed(error: io::Error) -> Result<()> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
-        _ => Err(writing(Path::new("standard output"))(error)),
+        _ => Err(writing(Path::new("standard output"))(error).into()),
     }
 }

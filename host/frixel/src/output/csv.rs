@@ -9,8 +9,8 @@ use anyhow::Result;
 use frixel_felt::recorder::{FeltRow, FlagNames};
 
 use super::decimals::Decimals;
-use crate::output_file::FileWriter;
 use crate::rigs::BoardEvent;
+use frixel_files::FileWriter;
 use frixel_lab::calibration::ForceRow;
 
 /// A row of a CSV file. `docs/outputs.md` describes the columns.
@@ -83,7 +83,7 @@ impl<R: CsvRow> CsvFile<R> {
 
     /// Writes the buffered rows to the file.
     pub(crate) fn flush(&mut self) -> Result<()> {
-        self.writer.flush().map_err(|source| self.writer.error(source))
+        Ok(self.writer.flush()?)
     }
 
     /// The file, which the caller commits.
@@ -92,7 +92,7 @@ impl<R: CsvRow> CsvFile<R> {
     }
 
     fn write_line(&mut self, line: impl Display) -> Result<()> {
-        writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))
+        Ok(writeln!(self.writer, "{line}")?)
     }
 }
 

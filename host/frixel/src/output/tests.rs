@@ -9,13 +9,13 @@ use proptest::prelude::*;
 
 use super::span::Extremes;
 use super::*;
-use crate::output_file::{Inputs, OutputFile};
 use crate::scene_file;
 use frixel_chart::{RGBColor, colour};
 use frixel_control::Board;
 use frixel_driver::Counters;
 use frixel_felt::metrics::{ErrorSize, MetricsSummary};
 use frixel_felt::recorder::FeltRow;
+use frixel_files::{Inputs, OutputFile};
 use frixel_scene::reference::Reference;
 use frixel_scene::{LayerNumber, LayerTitle, Program, compile};
 

@@ -11,7 +11,7 @@ use thiserror::Error;
 pub(crate) enum ReportError {
     /// A file could not be written.
     #[error(transparent)]
-    Output(#[from] anyhow::Error),
+    Output(#[from] frixel_files::Error),
     /// The file with instruction counts could not be read.
     #[error("{} cannot be read ({source}): `cargo xtask bench` writes such a file", .path.display())]
     ReadBench { path: PathBuf, source: io::Error },

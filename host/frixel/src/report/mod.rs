@@ -19,9 +19,9 @@ pub(crate) use error::ReportError;
 
 use frixel_scene::{CompileError, Program, Scene};
 
-use crate::output_file::{Inputs, OutputFolder};
 use counts::Counts;
 use finger::DrawnFinger;
+use frixel_files::{Inputs, OutputFolder};
 use page::Page;
 
 /// The scene that a report is about.

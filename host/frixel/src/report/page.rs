@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use frixel_chart::{Chart, Panel};
 
 use super::error::ReportError;
-use crate::output_file::{Inputs, OutputFile, commit_all};
+use frixel_files::{Inputs, OutputFile, commit_all};
 
 const STYLE: &str = "\
 body { font: 15px/1.4 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 1rem auto; max-width: 1500px; \

@@ -10,7 +10,7 @@ use frixel_hil_sim::{PseudoTerminal, Rig};
 
 use super::pace::{Dropped, Pace};
 use super::server_log::ServerLog;
-use crate::output_file::Inputs;
+use frixel_files::Inputs;
 
 /// Time that the server sleeps between two readings of the clock.
 const NAP: Duration = Duration::from_millis(1);

@@ -10,7 +10,7 @@ use frixel_wire::fault::State;
 
 use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
-use crate::output_file::{Inputs, OutputFile, OutputFolder};
+use frixel_files::{Inputs, OutputFile, OutputFolder};
 
 /// The option that names the folder.
 const OPTION: &str = "--out";

@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_hil_sim::TouchConfig;
-use frixel_lab::input::is_same_name;
+use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
     CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
@@ -71,11 +71,6 @@ fn profile_advice(nearest: &Nearest, file: &str) -> String {
         None if file.starts_with('~') => TILDE_ADVICE.to_owned(),
         None => format!("give its file, or a bundled one: {}", nearest.known.join(", ")),
     }
-}
-
-/// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
-pub(crate) fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
-    if path.starts_with("~") { TILDE_ADVICE } else { advice }
 }
 
 /// Reads a scene file. The names of files in it are paths relative to its folder.

@@ -1,5 +1,5 @@
 //! Nothing of the user's is ever lost: what commands write, over every output of every command. The rules themselves
-//! are tested where they are kept, in `src/output_file/tests.rs`.
+//! are tested where they are kept, in `host/files`.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

@@ -14,7 +14,7 @@ fn record_until_rows(folder: &Folder, board: VirtualBoard, kills: bool) -> (Virt
     let mut child = folder.command(&line).stdout(Stdio::null()).spawn().unwrap();
     until("rows", || folder.path("me.csv.partial").exists() && folder.text("me.csv.partial").len() > 2_000);
     let second = folder.run("board record --port nowhere -o me.csv --overwrite");
-    assert!(second.refused("me.csv is being written by another frixel"), "{}", second.notes);
+    assert!(second.refused("another frixel writes to me.csv: wait for it"), "{}", second.notes);
     let board = if kills {
         child.kill().unwrap();
         board

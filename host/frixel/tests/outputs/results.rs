@@ -107,7 +107,7 @@ fn a_folder_has_one_writer_and_no_picture_of_an_earlier_play() {
     let folder = Folder::new();
     let board = VirtualBoard::start(&folder, "sim --out out");
     for line in ["play scene.toml --seconds 0.1 --out ./out", "demo --out out", "sim --out out"] {
-        assert!(folder.run(line).refused("another frixel writes into "), "{line}");
+        assert!(folder.run(line).refused("another frixel writes to "), "{line}");
     }
     assert_eq!(folder.text("out/felt.csv").matches("t_s,").count(), 1, "one log");
     drop(board);

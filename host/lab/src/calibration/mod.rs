@@ -10,7 +10,7 @@ mod protocol;
 mod simulated_finger;
 
 use std::fmt::Write as _;
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 
 use serde::Serialize;
 use thiserror::Error;
@@ -107,7 +107,7 @@ struct Written<'r> {
 }
 
 /// Writes what a board reported as CSV, which [`read_board`] reads: the column names, or rows behind them.
-pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<(), CalibrationError> {
+pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> io::Result<()> {
     let mut text = String::new();
     if rows.is_none() {
         text.push_str("time_s,voltage_v_rms,speed_mm_s\n");
@@ -116,10 +116,7 @@ pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> Result<
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{time_s:.6},{voltage_v_rms:.4},{speed_mm_s:.3}");
     }
-    output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.flush())
-        .map_err(|error| CalibrationError::Write(error.into()))
+    output.write_all(text.as_bytes()).and_then(|()| output.flush())
 }
 
 /// Reads what [`write_board`] wrote.

@@ -10,6 +10,7 @@ mod claims;
 mod error;
 mod fields;
 mod metadata;
+mod of_person;
 mod parquet_reader;
 mod parquet_writer;
 mod replay;
@@ -24,8 +25,8 @@ pub use claims::check_length;
 pub use error::RecordingError;
 pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
 pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};
-pub(crate) use parquet_reader::MAGIC;
-pub use parquet_reader::is_of_person;
+pub use of_person::is_of_person;
+pub use parquet_reader::MAGIC;
 pub use parquet_writer::{ParquetWriter, table_parquet};
 pub use replay::ReplayError;
 

@@ -17,7 +17,7 @@ use super::parquet_writer::{
 use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values, claims, seal};
 
 /// First and last bytes of a Parquet file.
-pub(crate) const MAGIC: &[u8; 4] = b"PAR1";
+pub const MAGIC: &[u8; 4] = b"PAR1";
 /// Bytes of a footer's length and of the last bytes behind it.
 const TAIL_BYTES: usize = 8;
 /// Most ends of a footer, from the last on, that are tried where the end is missing. In one that was cut off the first of
@@ -67,7 +67,7 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
 
 /// Whether a file is a recording of a person, by its last bytes: `8 + N` of them at least, where `N` is the
 /// little-endian number in the first four of the last eight.
-pub fn is_of_person(end: &[u8]) -> bool {
+pub(super) fn is_footer_of_person(end: &[u8]) -> bool {
     let metadata = || {
         let encoded = end.get(footer_start(end).ok()?..end.len().checked_sub(TAIL_BYTES)?)?;
         claims::check_footer(encoded).ok()?;

@@ -1,3 +1,4 @@
+use std::io::Cursor;
 use std::sync::Arc;
 
 use frixel_felt::recorder::{FeltRow, MarkedEvent, Marker};
@@ -171,7 +172,30 @@ fn a_writer_that_is_killed_loses_the_last_row_group() {
         assert_eq!(read, whole, "{len} bytes");
     }
     assert!(matches!(Recording::read_parquet(bytes[..first - 1].to_vec()), Err(RecordingError::Truncated)));
-    assert!(is_of_person(&bytes) && !is_of_person(&bytes[..first - 1]));
+    assert!(is_known(&bytes) && is_known(&bytes[..first]) && !is_known(&bytes[..first - 1]));
+}
+
+/// Whether a file with these bytes is a recording of a person.
+fn is_known(bytes: &[u8]) -> bool {
+    is_of_person(Cursor::new(bytes)).unwrap_or(false)
+}
+
+#[test]
+fn a_recording_of_a_person_is_known_by_its_content() {
+    for (text, what) in [
+        ("t_s,x_mm,y_mm\n0,1,2\n", "a stroke"),
+        ("\u{feff}\"t_s\";\"x_mm\";\"y_mm\"\r\n0,0;1,0;2,0\r\n", "as a spreadsheet saves it"),
+        ("time_s,stroke,voltage_v_rms,normal_force_n,friction_n\n", "friction"),
+        ("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags,participant\n", "a play of a person"),
+        ("{\"rig\":\"board\",\"simulated\":false}\n", "its summary"),
+        ("[finger]\norigin = \"perceptual\"\n", "what a person felt"),
+    ] {
+        assert!(is_known(text.as_bytes()), "{what}");
+    }
+    let simulated = ["t_s,x_mm,y_mm,speed_mm_s,felt_n,flags\n", "{\"rig\":\"sim\",\"simulated\":true}\n"];
+    for text in simulated.into_iter().chain(["PAR1", "PAR1\u{7f}\u{7f}\u{7f}\u{7f}PAR1", ""]) {
+        assert!(!is_known(text.as_bytes()), "{text}");
+    }
 }
 
 /// A recording without a known end stops where it could not be read back, and what it has so far is whole.
@@ -189,7 +213,7 @@ fn a_recording_that_becomes_too_long_ends_readable() {
 #[test]
 fn what_is_no_recording_is_refused_with_what_to_do() {
     let own = bytes(&recording(10));
-    assert!(!is_of_person(&own), "it is simulated");
+    assert!(!is_known(&own), "it is simulated");
     let foreign = {
         let schema = parquet::schema::types::Type::group_type_builder("schema").build().unwrap();
         let writer = parquet::file::writer::SerializedFileWriter::new(Vec::new(), schema.into(), Arc::default());

@@ -5,11 +5,11 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::output_file::{FileWriter, Inputs, Recording};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use frixel_driver::{Device, Event, Link};
 use frixel_felt::recorder::Observation;
+use frixel_files::{FileWriter, Inputs, OutputFile};
 use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
@@ -54,7 +54,7 @@ pub(in crate::commands) struct RecordArgs {
 
 pub(super) fn run(args: &RecordArgs) -> Result<()> {
     parquet::check_participant(&args.output, args.participant.as_deref())?;
-    let recording = Recording::new(&args.output, "-o", &Inputs::default(), args.overwrite, CUT_OFF)?;
+    let recording = OutputFile::recording(&args.output, "-o", &Inputs::default(), args.overwrite)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
         let other = |error: TableError| {
@@ -70,7 +70,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
     // Without a port, the recording is finished above.
     let port = args.port.as_deref().unwrap_or_default();
     let interrupt = Interrupt::watch()?;
-    let writer = recording.start()?;
+    let writer = recording.record(CUT_OFF)?;
     let device = Device::connect(port::open(port, &[])?)?;
     let mut device = waiting::watch(device, &interrupt);
     let mut rows = Rows::new(writer, device.hello().tick_hz)?;
@@ -78,7 +78,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
         Ok(()) => finish(args, &recording, rows.writer, rows.touched, Some(device.hello())),
         Err(error) => {
             drop(rows);
-            Err(cut_off(&recording, error))
+            Err(cut_off(&recording, CUT_OFF, error))
         }
     }
 }
@@ -121,7 +121,7 @@ fn touched(text: &str) -> Result<u64, TableError> {
 /// Gives the file its name, as CSV or as Parquet.
 fn finish(
     args: &RecordArgs,
-    recording: &Recording,
+    recording: &OutputFile,
     writer: FileWriter,
     touched: u64,
     board: Option<&Hello>,
@@ -137,13 +137,13 @@ fn finish(
         let (_rows, text) = recording.resume()?;
         let is_simulated = board.is_some_and(|hello| hello.board.is_simulated());
         let metadata = Metadata::new("board", board, is_simulated, args.participant.as_deref());
-        parquet::write(recording.output(), text.as_bytes(), stroke_fields(), metadata)?;
+        parquet::write(recording, text.as_bytes(), stroke_fields(), metadata)?;
         recording.discard_partial();
     } else {
         writer.commit()?;
     }
-    let (output, seconds) = (recording.output(), touched as f64 / f64::from(ROWS_HZ));
-    say(output, format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", output.path().display()))
+    let seconds = touched as f64 / f64::from(ROWS_HZ);
+    say(recording, format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", recording.path().display()))
 }
 
 /// The rows, from the first touch on.
@@ -181,10 +181,10 @@ impl Rows {
     }
 
     fn write(&mut self, line: impl Display) -> Result<()> {
-        writeln!(self.writer, "{line}").map_err(|source| self.writer.error(source))
+        Ok(writeln!(self.writer, "{line}")?)
     }
 
     fn flush(&mut self) -> Result<()> {
-        self.writer.flush().map_err(|source| self.writer.error(source))
+        Ok(self.writer.flush()?)
     }
 }

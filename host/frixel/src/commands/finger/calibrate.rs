@@ -18,7 +18,7 @@ use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::parquet;
 use crate::commands::terminal::say;
-use crate::output_file::{Inputs, Recording};
+use frixel_files::{Inputs, OutputFile};
 use recorded::Recorded;
 
 /// How to keep what a board reported until the recording was cut off.
@@ -67,13 +67,13 @@ pub(in crate::commands) struct CalibrateArgs {
 pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
     parquet::check_participant(&args.output, args.participant.as_deref())?;
     let inputs = Inputs::new(&args.forces);
-    let recording = Recording::new(&args.output, "-o", &inputs, args.overwrite, CUT_OFF)?;
+    let recording = OutputFile::recording(&args.output, "-o", &inputs, args.overwrite)?;
     if args.finish {
-        return finish(args, &recording).map_err(|error| experiment::cut_off(&recording, error));
+        return finish(args, &recording).map_err(|error| experiment::cut_off(&recording, CUT_OFF, error));
     }
     let interrupt = Interrupt::watch()?;
     // A pipe is opened once.
-    let partial = recording.output().is_file().then(|| recording.start()).transpose()?;
+    let partial = recording.is_file().then(|| recording.record(CUT_OFF)).transpose()?;
     // A file of forces that is missing, or of something else, is found before the run, not after it.
     if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
         forces::read(path)?;
@@ -84,11 +84,11 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
         recorded::on_port(args, &recording, &interrupt, partial).map(|(recorded, hello)| (recorded, Some(hello)))
     };
     let written = recorded.and_then(|(recorded, hello)| write(args, &recording, &recorded, hello.as_ref()));
-    written.map_err(|error| experiment::cut_off(&recording, error))
+    written.map_err(|error| experiment::cut_off(&recording, CUT_OFF, error))
 }
 
 /// Makes the recording of what one that was cut off has left.
-fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<()> {
+fn finish(args: &CalibrateArgs, recording: &OutputFile) -> Result<()> {
     let (_partial, text) = recording.resume()?;
     let board = read_board(text.as_bytes())?;
     let copied = forces::copy(args)?.partial();
@@ -97,24 +97,29 @@ fn finish(args: &CalibrateArgs, recording: &Recording) -> Result<()> {
 }
 
 /// Joins what board and sensor saw, and writes it.
-fn write(args: &CalibrateArgs, recording: &Recording, (board, forces): &Recorded, hello: Option<&Hello>) -> Result<()> {
+fn write(
+    args: &CalibrateArgs,
+    recording: &OutputFile,
+    (board, forces): &Recorded,
+    hello: Option<&Hello>,
+) -> Result<()> {
     let rows = align(board, forces)?;
-    let (output, mut bytes) = (recording.output(), Vec::new());
+    let mut bytes = Vec::new();
     write_csv(&mut bytes, &rows)?;
     if parquet::is_named_so(&args.output) {
         // What was cut off is of a board: a simulator needs no file until the end.
         let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
         let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };
         let metadata = Metadata::new(rig, hello, is_simulated, args.participant.as_deref());
-        parquet::write(output, &bytes, calibration_fields(), metadata)?;
+        parquet::write(recording, &bytes, calibration_fields(), metadata)?;
     } else {
-        output.write(&bytes)?;
+        recording.write(&bytes)?;
     }
     recording.discard_partial();
     forces::copy(args)?.discard_partial();
-    let path = output.path().display();
-    say(output, format_args!("  {:<16} {path}", "wrote"))?;
+    let path = recording.path().display();
+    say(recording, format_args!("  {:<16} {path}", "wrote"))?;
     let highest = rows.iter().map(|row| row.voltage_v_rms).fold(0.0, f64::max);
     let voltage = if highest < 145.0 { format!(" --voltage {highest:.0}") } else { String::new() };
-    say(output, format_args!("  {:<16} frixel finger fit {path}{voltage} -o finger.toml", "next"))
+    say(recording, format_args!("  {:<16} frixel finger fit {path}{voltage} -o finger.toml", "next"))
 }

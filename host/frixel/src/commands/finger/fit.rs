@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use crate::commands::error::reading;
 use crate::input::{self, Bounded};
 use crate::output::draw_fit_svg;
-use crate::output_file::{Inputs, OutputFile, commit_all};
 use anyhow::{Result, anyhow, bail};
 use chrono::Utc;
 use clap::{Args, ValueEnum};
+use frixel_files::{Inputs, OutputFile, commit_all};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, FingerProfile};
@@ -183,10 +183,10 @@ impl Outputs {
         if let (Some(plots), Fitted::Contact(fit)) = (&self.plots, fit) {
             let drawn = draw_fit_svg(&format!("{}, fitted", data.display()), fit)?;
             written.push(plots.filled(drawn.as_bytes())?);
-            return commit_all(written, &[]);
+            return Ok(commit_all(written, &[])?);
         }
         // Where there is another law, plots of an earlier fit would stand beside its profile.
-        commit_all(written, self.plots.as_slice())
+        Ok(commit_all(written, self.plots.as_slice())?)
     }
 
     fn names(&self, law: Law) -> String {

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use crate::output::{FeltCsv, Report, Subject, Trace, TracedLayer, draw_felt_svg, draw_scene_png};
-use crate::output_file::{FileWriter, Inputs, OutputFile, OutputFolder, Recording, commit_all, is_recording};
 use crate::scene_file::SceneFiles;
 use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
+use frixel_files::{FileWriter, Inputs, OutputFile, OutputFolder, commit_all, is_of_person};
 use frixel_lab::recording::Metadata;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
@@ -45,8 +45,7 @@ impl PlayFiles {
         let others = [args.stroke.file(), args.stream.file(), args.with_log.as_deref(), args.touch.file()];
         let inputs = Inputs::new(scene.paths().chain(others.into_iter().flatten()));
         Self::check_earlier(args)?;
-        let new = if args.overwrite { OutputFile::replacing } else { OutputFile::new };
-        let file = |name: &str| new(&args.out.join(name), OPTION, &inputs);
+        let file = |name: &str| OutputFile::replacing(&args.out.join(name), OPTION, &inputs, args.overwrite);
         let files = Self {
             felt: file("felt.csv")?,
             summary: file("summary.json")?,
@@ -67,8 +66,8 @@ impl PlayFiles {
 
     /// Rejects a play that would replace what a person's finger did on a board.
     fn check_earlier(args: &PlayArgs) -> Result<()> {
-        let is_of_person = |name| is_recording(&args.out.join(name));
-        if !args.overwrite && (is_of_person("felt.csv") || is_of_person("summary.json")) {
+        let is_kept = |name| is_of_person(&args.out.join(name));
+        if !args.overwrite && (is_kept("felt.csv") || is_kept("summary.json")) {
             bail!(
                 "{} has what a finger did on a board, which no other play replaces: give another folder to {OPTION}, \
                  or add --overwrite",
@@ -82,9 +81,9 @@ impl PlayFiles {
     pub(super) fn check(&self, scene: &SceneFiles) -> Result<()> {
         let inputs = Inputs::new(scene.paths());
         for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
-            inputs.check(file)?;
+            file.check_inputs(&inputs)?;
         }
-        self.record.iter().try_for_each(|(record, _)| inputs.check(record))
+        Ok(self.record.iter().try_for_each(|(record, _)| record.check_inputs(&inputs))?)
     }
 
     /// What the recording of `--record` is made from.
@@ -97,12 +96,7 @@ impl PlayFiles {
         if is_simulated {
             return FeltCsv::new(self.felt.create()?);
         }
-        FeltCsv::of_person(self.recording(args.overwrite).start()?, args.participant.as_deref())
-    }
-
-    /// `felt.csv` as a recording of a person.
-    fn recording(&self, overwrites: bool) -> Recording {
-        Recording::of(self.felt.clone(), overwrites, CUT_OFF)
+        FeltCsv::of_person(self.felt.record(CUT_OFF)?, args.participant.as_deref())
     }
 
     fn paths(&self) -> Vec<PathBuf> {
@@ -146,9 +140,7 @@ impl Outputs {
         // The play that wrote into the folder until now may have been of a person.
         PlayFiles::check_earlier(args)?;
         let csv = files.start(is_simulated, args)?;
-        let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| {
-            RecordFile::start(output, metadata, args.overwrite)
-        };
+        let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| RecordFile::start(output, metadata);
         let record = files.record.as_ref().zip(metadata).map(create).transpose()?;
         let log = args.with_log.as_deref().map(LogJoin::new);
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));
@@ -265,11 +257,11 @@ impl Outputs {
         let joined = self.put(&rows, markers).and(joined);
         let (files, is_simulated, _locked) = (self.files.clone(), self.is_simulated, self.folder.take());
         let written = self.write_all(program, report, (markers, interrupted));
-        let committed = written.and_then(|written| commit_all(written, std::slice::from_ref(&files.other_svg)));
+        let committed = written.and_then(|written| Ok(commit_all(written, std::slice::from_ref(&files.other_svg))?));
         match committed.and(joined) {
             Ok(()) => Ok(files.paths()),
             Err(error) if is_simulated => Err(error),
-            Err(error) => Err(cut_off(&files.recording(false), error)),
+            Err(error) => Err(cut_off(&files.felt, CUT_OFF, error)),
         }
     }
 
@@ -282,11 +274,11 @@ impl Outputs {
         let record = self.record.map(|record| record.finish(marked.0, marked.1)).transpose()?;
         let others = [self.csv.into_writer(), svg_file.filled(svg.as_bytes())?, png_file.filled(&png)?];
         let mut written: Vec<FileWriter> = others.into_iter().chain(record).collect();
-        let named = |file: &mut FileWriter| {
+        let named = |file: &FileWriter| {
             let name = file.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
-            Ok((name, file.sha256()?))
+            (name, file.sha256())
         };
-        let files = written.iter_mut().map(named).collect::<Result<_>>()?;
+        let files = written.iter().map(named).collect();
         // The speed of the simulation is another one each time, and equal plays give equal files.
         let reproducible = Report { realtime_factor: None, files, ..report.clone() };
         written.push(summary.filled((reproducible.to_json() + "\n").as_bytes())?);

@@ -9,8 +9,8 @@ use frixel_lab::recording::{GrowingFile, Metadata, ParquetWriter, ROWS_PER_GROUP
 use frixel_lab::simulate::PlayOptions;
 
 use crate::commands::error::at;
-use crate::output_file::{FileWriter, Inputs, OutputFile, Recording};
 use crate::scene_file::SceneFiles;
+use frixel_files::{FileWriter, Inputs, OutputFile};
 
 use super::super::parquet;
 use super::PlayArgs;
@@ -29,8 +29,7 @@ pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFi
         let path = path.display();
         bail!("{path} is no Parquet file by its name: give --record a name that ends in .parquet");
     }
-    let new = if args.overwrite { OutputFile::replacing } else { OutputFile::new };
-    new(path, OPTION, inputs).map(Some)
+    Ok(Some(OutputFile::replacing(path, OPTION, inputs, args.overwrite)?))
 }
 
 /// Writes rows as Parquet while a scene plays.
@@ -48,15 +47,13 @@ pub(super) struct RecordFile {
 impl RecordFile {
     /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each
     /// row group; a play on a simulator can be made again.
-    pub(super) fn start(output: &OutputFile, metadata: Metadata, overwrites: bool) -> Result<Self> {
+    pub(super) fn start(output: &OutputFile, metadata: Metadata) -> Result<Self> {
         let (file, rows_per_group) = if metadata.is_simulated {
             (output.create()?, ROWS_PER_GROUP)
         } else {
-            if !overwrites {
-                output.check_new()?;
-            }
+            output.check_new()?;
             let rows_hz = metadata.tick_hz / metadata.ticks_per_row.max(1);
-            (recording(output, overwrites).start()?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
+            (output.record(CUT_OFF)?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
         };
         let path = output.path();
         let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(at(path.display()))?;
@@ -120,13 +117,8 @@ impl RecordFile {
             parquet.end(metadata).map_err(at(file.path().display()))?;
         }
         let bytes = std::mem::take(parquet.get_mut());
-        file.write_all(&bytes).and_then(|()| file.flush()).map_err(|source| file.error(source))
+        Ok(file.write_all(&bytes).and_then(|()| file.flush())?)
     }
-}
-
-/// The file as a recording of a person.
-fn recording(output: &OutputFile, overwrites: bool) -> Recording {
-    Recording::of(output.clone(), overwrites, CUT_OFF)
 }
 
 #[cfg(test)]
@@ -138,10 +130,10 @@ mod tests {
     use super::*;
 
     /// A record of what a person did on a board, at 1,000 rows a second.
-    fn start(folder: &Path, overwrites: bool) -> Result<RecordFile> {
+    fn start(folder: &Path) -> Result<RecordFile> {
         let output = OutputFile::new(&folder.join("me.parquet"), OPTION, &Inputs::default())?;
         let metadata = Metadata { tick_hz: 40_000, ticks_per_row: 40, ..Metadata::default() };
-        RecordFile::start(&output, metadata, overwrites)
+        RecordFile::start(&output, metadata)
     }
 
     fn rows(count: u32) -> Vec<FeltRow> {
@@ -156,7 +148,7 @@ mod tests {
     fn a_persons_play_that_is_killed_loses_ten_seconds_at_most() {
         let folder = tempfile::tempdir().unwrap();
         let partial = folder.path().join("me.parquet.partial");
-        let mut file = start(folder.path(), false).unwrap();
+        let mut file = start(folder.path()).unwrap();
         file.write(&rows(9_999), &[]).unwrap();
         assert!(fs::read(&partial).unwrap().is_empty());
         file.write(&rows(12_000), &[]).unwrap();
@@ -166,21 +158,21 @@ mod tests {
         drop(file);
         assert_eq!(read(&partial), kept, "an error that ends the play leaves it as well");
 
-        let error = start(folder.path(), false).err().unwrap().to_string();
+        let error = start(folder.path()).err().unwrap().to_string();
         assert!(
             error.contains("me.parquet.partial has the rows of a recording that was cut off: rename it to"),
             "{error}"
         );
         assert_eq!(read(&partial), kept);
         fs::rename(&partial, folder.path().join("me.parquet")).unwrap();
-        let error = start(folder.path(), false).err().unwrap().to_string();
+        let error = start(folder.path()).err().unwrap().to_string();
         assert!(error.contains("me.parquet is a recording of a person, which no result replaces"), "{error}");
     }
 
     #[test]
     fn a_persons_play_that_ends_has_every_row() {
         let folder = tempfile::tempdir().unwrap();
-        let mut file = start(folder.path(), false).unwrap();
+        let mut file = start(folder.path()).unwrap();
         file.write(&rows(10_001), &[]).unwrap();
         file.finish(&[], false).unwrap().commit().unwrap();
         let recorded = read(&folder.path().join("me.parquet"));
@@ -191,7 +183,7 @@ mod tests {
     #[test]
     fn a_persons_play_that_has_no_row_group_yet_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let mut file = start(folder.path(), false).unwrap();
+        let mut file = start(folder.path()).unwrap();
         file.write(&rows(100), &[]).unwrap();
         drop(file);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -13,7 +13,7 @@ use crate::commands::error::writing;
 use crate::commands::port;
 use crate::commands::terminal::print_line;
 use crate::input;
-use crate::output_file::{Inputs, OutputFile};
+use frixel_files::{Inputs, OutputFile};
 
 /// Longest silence of a board that runs the self-test: it counts the clocks of 10,000 frames meanwhile.
 const SILENCE_MAX: Duration = Duration::from_secs(20);

@@ -8,19 +8,19 @@ use std::time::{Duration, Instant};
 
 use crate::commands::error::{at, reading};
 use crate::input::{self, Bounded};
-use crate::output_file::{FileWriter, Inputs, Recording};
 use anyhow::Result;
+use frixel_files::{FileWriter, Inputs, OutputFile};
 use frixel_lab::calibration::{ForceRow, read_forces};
 use frixel_lab::table::Reading;
 
-use super::{CUT_OFF, CalibrateArgs};
+use super::CalibrateArgs;
 use crate::commands::terminal::note_understood;
 
 /// The copy of the forces that come on standard input: `DATA.csv.forces.partial`.
-pub(super) fn copy(args: &CalibrateArgs) -> Result<Recording> {
+pub(super) fn copy(args: &CalibrateArgs) -> Result<OutputFile> {
     let mut path = args.output.clone().into_os_string();
     path.push(".forces");
-    Recording::new(path.as_ref(), "-o", &Inputs::new(&args.forces), true, CUT_OFF)
+    Ok(OutputFile::recording(path.as_ref(), "-o", &Inputs::new(&args.forces), true)?)
 }
 
 /// Standard input, which is read while the board plays, so that its writer does not block.

@@ -17,8 +17,8 @@ use crate::commands::error::of_finger;
 use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{note, say};
-use crate::output_file::Recording;
 use crate::rigs::RecordedLink;
+use frixel_files::OutputFile;
 
 /// Rows a second of the recording.
 pub(super) const ROW_HZ: u32 = 1_000;
@@ -41,9 +41,9 @@ impl Plan {
     }
 
     /// Says what will be played.
-    pub(super) fn say(&self, recording: &Recording) -> Result<()> {
+    pub(super) fn say(&self, recording: &OutputFile) -> Result<()> {
         let words = self.protocol.words();
-        words.lines().try_for_each(|line| say(recording.output(), format_args!("  {:<16} {line}", "plan")))
+        words.lines().try_for_each(|line| say(recording, format_args!("  {:<16} {line}", "plan")))
     }
 
     /// Starts to play the protocol.

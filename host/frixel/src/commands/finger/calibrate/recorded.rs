@@ -11,20 +11,20 @@ use frixel_play::RigStream;
 use frixel_wire::hello::Hello;
 
 use super::plan::{Plan, ROW_HZ};
-use super::{CalibrateArgs, forces};
+use super::{CUT_OFF, CalibrateArgs, forces};
 use crate::commands::error::{of_finger, of_generated_stroke, reading};
 use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::profiles::screen;
 use crate::commands::waiting;
-use crate::output_file::{FileWriter, Recording};
+use frixel_files::{FileWriter, OutputFile};
 
 /// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
 const FORCES_LATE: Duration = Duration::from_millis(500);
 
 pub(super) type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
 
-pub(super) fn on_simulator(args: &CalibrateArgs, recording: &Recording, interrupt: &Interrupt) -> Result<Recorded> {
+pub(super) fn on_simulator(args: &CalibrateArgs, recording: &OutputFile, interrupt: &Interrupt) -> Result<Recorded> {
     let simulated = Simulated::new(args)?;
     simulated.plan.say(recording)?;
     let (board, forces) = simulated.record(interrupt)?;
@@ -68,7 +68,7 @@ impl Simulated {
 
 pub(super) fn on_port(
     args: &CalibrateArgs,
-    recording: &Recording,
+    recording: &OutputFile,
     interrupt: &Interrupt,
     mut partial: Option<FileWriter>,
 ) -> Result<(Recorded, Hello)> {
@@ -88,7 +88,7 @@ pub(super) fn on_port(
     plan.say(recording)?;
     let from_stdin = if forces == Path::new("-") {
         // What goes to a stream has no copies.
-        let copy = partial.is_some().then(|| forces::copy(args)?.start()).transpose()?;
+        let copy = if partial.is_some() { Some(forces::copy(args)?.record(CUT_OFF)?) } else { None };
         Some(forces::StandardInput::read(copy))
     } else {
         None

@@ -1,12 +1,16 @@
-//! Tests of the files that commands write.
-
+use std::cell::RefCell;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
 use super::*;
+
+thread_local! {
+    /// The folders whose names were put on the disk, in this order.
+    pub(crate) static SYNCED: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
+}
 
 struct Folder(TempDir);
 
@@ -36,8 +40,8 @@ impl Folder {
     }
 }
 
-fn recording(path: &Path, overwrites: bool) -> Recording {
-    Recording::new(path, "-o", &Inputs::default(), overwrites, "keep them").unwrap()
+fn recording(path: &Path, overwrites: bool) -> OutputFile {
+    OutputFile::recording(path, "-o", &Inputs::default(), overwrites).unwrap()
 }
 
 /// Whatever ends the renaming, every name has a whole file: the last one has not been replaced yet.
@@ -53,7 +57,9 @@ fn a_set_that_is_renamed_in_part_has_lost_no_file() {
     assert_eq!(now, ["of this run", "earlier", "earlier", "earlier"]);
     assert_eq!(folder.count(), 4);
     let files = outputs.iter().take(3).map(|output| output.filled(b"of this run").unwrap()).collect();
+    assert!(SYNCED.take().is_empty(), "nothing is whole yet");
     commit_all(files, &outputs[3..]).unwrap();
+    assert_eq!(SYNCED.take(), [folder.0.path().canonicalize().unwrap()], "the new names are on the disk");
     assert_eq!((folder.text("summary").as_deref(), folder.text("stale")), (Some("of this run"), None));
 }
 
@@ -63,15 +69,15 @@ fn a_file_that_is_dropped_or_whose_process_was_killed_leaves_the_earlier_one() {
     let output = folder.output("file", "earlier");
     fs::write(folder.path(".file.frixel-tmp"), "left by a process that was killed").unwrap();
     let writer = output.filled(b"new").unwrap();
-    assert!(output.create().unwrap_err().is::<Busy>(), "one process writes a file");
+    assert!(matches!(output.create(), Err(Error::Busy(_))), "one process writes a file");
     drop(writer);
     assert_eq!((folder.text("file").as_deref(), folder.count()), (Some("earlier"), 1));
     let mut open = File::open(folder.path("file")).unwrap();
-    let mut writer = output.filled(b"new").unwrap();
-    assert_eq!(writer.sha256().unwrap(), frixel_lab::hash::sha256(b"new"));
+    let writer = output.filled(b"new").unwrap();
+    assert_eq!(writer.sha256(), frixel_lab::hash::sha256(b"new"));
     writer.commit().unwrap();
     let mut read = String::new();
-    io::Read::read_to_string(&mut open, &mut read).unwrap();
+    open.read_to_string(&mut read).unwrap();
     assert_eq!((folder.text("file").as_deref(), read.as_str()), (Some("new"), "earlier"));
     fs::write(folder.path(".file.frixel-tmp"), "left by a process that was killed").unwrap();
     output.write(b"").unwrap();
@@ -85,7 +91,7 @@ fn a_new_file_replaces_none_that_came_meanwhile() {
         let folder = Folder::new();
         let output = folder.output("rows", "");
         let mut writer = if is_recording {
-            recording(&folder.path("rows"), false).start().unwrap()
+            recording(&folder.path("rows"), false).record("keep them").unwrap()
         } else {
             output.create().unwrap()
         };
@@ -150,22 +156,18 @@ fn links_lead_to_inputs_and_outputs() {
 }
 
 #[test]
-fn a_recording_of_a_person_is_known_by_its_content() {
+fn a_recording_of_a_person_is_replaced_only_by_what_overwrites() {
     let folder = Folder::new();
-    let is_known = |text: &str| {
-        fs::write(folder.path("any name"), text).unwrap();
-        let refused = OutputFile::new(&folder.path("any name"), "-o", &Inputs::default()).is_err();
-        assert_eq!(refused, is_recording(&folder.path("any name")));
-        refused
-    };
-    assert!(is_known("t_s,x_mm,y_mm\n0,1,2\n"), "a stroke");
-    assert!(is_known("\u{feff}\"t_s\";\"x_mm\";\"y_mm\"\r\n0,0;1,0;2,0\r\n"), "as a spreadsheet saves it");
-    assert!(is_known("time_s,stroke,voltage_v_rms,normal_force_n,friction_n\n"), "friction");
-    assert!(is_known("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags,participant\n"), "a play of a person");
-    assert!(is_known("{\"rig\":\"board\",\"simulated\":false}\n"), "its summary");
-    assert!(is_known("[finger]\norigin = \"perceptual\"\n"), "what a person felt");
-    assert!(!is_known("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags\n"), "a simulated play");
-    assert!(!is_known("{\"rig\":\"sim\",\"simulated\":true}\n") && !is_known("PAR1") && !is_known(""));
+    let path = folder.path("any name");
+    fs::write(&path, "t_s,x_mm,y_mm\n0,1,2\n").unwrap();
+    let replacing = |overwrites| OutputFile::replacing(&path, "-o", &Inputs::default(), overwrites);
+    assert!(matches!(OutputFile::new(&path, "-o", &Inputs::default()), Err(Error::OfPerson(..))));
+    assert!(matches!(replacing(false), Err(Error::OfPerson(..))));
+    assert!(matches!(OutputFile::recording(&path, "-o", &Inputs::default(), false), Err(Error::Exists(..))));
+    replacing(true).unwrap().write(b"new").unwrap();
+    assert_eq!(folder.text("any name").as_deref(), Some("new"));
+    assert!(OutputFile::recording(&path, "-o", &Inputs::default(), false).is_err(), "a recording replaces no file");
+    assert!(OutputFile::new(&path, "-o", &Inputs::default()).is_ok(), "a result replaces a result");
 }
 
 #[test]
@@ -178,9 +180,9 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
         ("A letter.", "is in the way, and no recording left it"),
     ] {
         fs::write(folder.path("rows.csv.partial"), earlier).unwrap();
-        let error = recording(&path, false).start().unwrap_err().to_string();
+        let error = recording(&path, false).record("keep them").unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
-        let mut writer = recording(&path, true).start().unwrap();
+        let mut writer = recording(&path, true).record("keep them").unwrap();
         writer.write_all(b"t_s,x_mm\n").and_then(|()| writer.flush()).unwrap();
         assert_eq!(partial().as_deref(), Some(earlier), "a header is no row");
         drop(writer);
@@ -188,7 +190,7 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     }
     assert!(recording(&path, false).resume().is_err(), "a letter is not finished");
     assert_eq!(partial().as_deref(), Some("A letter."));
-    let mut writer = recording(&path, true).start().unwrap();
+    let mut writer = recording(&path, true).record("keep them").unwrap();
     writer.write_all(b"t_s,x_mm\n0,2\n").unwrap();
     drop(writer);
     fs::write(folder.path("rows.csv.partial"), partial().unwrap() + "9.12").unwrap();
@@ -197,10 +199,14 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     writer.write_all(b"1,2\n").unwrap();
     writer.commit().unwrap();
     assert_eq!((folder.text("rows.csv").as_deref(), folder.count()), (Some("t_s,x_mm\n0,2\n1,2\n"), 1));
-    let mut writer = recording(&path, true).start().unwrap();
+    let mut writer = recording(&path, true).record("keep them").unwrap();
     writer.write_all(b"t_s,x_mm\n").unwrap();
     drop(writer);
     assert_eq!(folder.count(), 1, "what never had a row leaves nothing");
+    let mut writer = recording(&path, true).record("keep them").unwrap();
+    writer.write_all(b"t_s,x_mm\n").unwrap();
+    writer.commit().unwrap();
+    assert_eq!((folder.text("rows.csv").as_deref(), folder.count()), (Some("t_s,x_mm\n"), 1), "a header is whole");
 }
 
 /// A file that was a link to a device without end took all memory.
@@ -210,10 +216,10 @@ fn a_device_in_place_of_a_file_is_not_read() {
     let folder = Folder::new();
     let link = |name: &str| std::os::unix::fs::symlink("/dev/zero", folder.path(name)).unwrap();
     link("felt.csv");
-    assert!(!is_recording(&folder.path("felt.csv")));
+    assert!(!is_of_person(&folder.path("felt.csv")));
     link("rows.csv.partial");
     let rows = recording(&folder.path("rows.csv"), false);
-    assert!(!rows.is_cut_off() && rows.start().is_err() && rows.resume().is_err());
+    assert!(!rows.is_cut_off() && rows.record("keep them").is_err() && rows.resume().is_err());
     fs::remove_file(folder.path("rows.csv.partial")).unwrap();
     File::create(folder.path("rows.csv.partial")).unwrap().set_len(8 << 30).unwrap();
     let error = rows.resume().unwrap_err().to_string();

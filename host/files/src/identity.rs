@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Whether two paths lead to one file, also by symbolic and, on Unix, hard links. False if either leads to none.
-pub(super) fn is_same_file(one: &Path, other: &Path) -> bool {
+pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
     at(one).is_some_and(|one| at(other) == Some(one))
 }
 
@@ -21,14 +21,14 @@ fn at(path: &Path) -> Option<std::path::PathBuf> {
 
 /// Whether an open file, or a standard stream, is the one that a path leads to.
 #[cfg(unix)]
-pub(super) fn is_open_at(file: impl std::os::fd::AsFd, path: &Path) -> bool {
+pub(crate) fn is_open_at(file: impl std::os::fd::AsFd, path: &Path) -> bool {
     let file = file.as_fd().try_clone_to_owned().map(std::fs::File::from);
     file.and_then(|file| file.metadata()).is_ok_and(|metadata| at(path) == Some(number(&metadata)))
 }
 
 /// Open files have no names here.
 #[cfg(not(unix))]
-pub(super) fn is_open_at<F>(_: F, _: &Path) -> bool {
+pub(crate) fn is_open_at<F>(_: F, _: &Path) -> bool {
     false
 }
 

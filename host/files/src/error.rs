@@ -1,0 +1,55 @@
+//! Why a file is not written.
+
+use std::io;
+use std::path::PathBuf;
+
+use frixel_lab::input::check_path;
+use thiserror::Error;
+
+/// Why a file is not written. Paths are as the user gave them, and texts are options, except where another meaning is
+/// stated.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The operating system does not write it. The text is advice.
+    #[error("{0} cannot be written ({1}): {advice}", advice = check_path(.0, .2))]
+    Unwritable(PathBuf, io::Error, &'static str),
+    /// The file is whole, under the last path, but does not get its name.
+    #[error(
+        "{0} cannot be replaced ({1}); the new one is whole, in {2}: close the program that has the old one open, and \
+         rename the new one"
+    )]
+    Unnamed(PathBuf, io::Error, PathBuf),
+    /// Another process writes the file, or into the folder.
+    #[error("another frixel writes to {0}: wait for it, or give another name")]
+    Busy(PathBuf),
+    /// The output is an input of the command as well.
+    #[error("{0} is an input as well, and would be overwritten: {advice}", advice = another(.1))]
+    Input(PathBuf, &'static str),
+    /// Another output of the command is the same file.
+    #[error("{0} would be written twice: {advice}", advice = another(.1))]
+    Twice(PathBuf, &'static str),
+    /// The file is write-protected.
+    #[error("{0} is write-protected: {advice}, or allow writing it", advice = another(.1))]
+    Protected(PathBuf, &'static str),
+    /// A result would replace a recording of a person.
+    #[error("{0} is a recording of a person, which no result replaces: {advice}", advice = another(.1))]
+    OfPerson(PathBuf, &'static str),
+    /// A recording would replace a file.
+    #[error("{0} is there already, and a recording is not replaced: {new}, or add --overwrite", new = another(.1))]
+    Exists(PathBuf, &'static str),
+    /// A recording that was cut off has left its rows. The text says how to keep them.
+    #[error("{0} has the rows of a recording that was cut off: {1}, or record anew with --overwrite")]
+    CutOff(PathBuf, &'static str),
+    /// A file that no recording has left is where the rows would be.
+    #[error("{0} is in the way, and no recording left it: rename it, or record with --overwrite")]
+    InTheWay(PathBuf),
+    /// There is no recording to finish.
+    #[error("there is no {0} with rows of a recording that was cut off: leave --finish out")]
+    NoRows(PathBuf),
+}
+
+/// Advice for a name that cannot be used.
+fn another(option: &str) -> String {
+    let name = if option == "--out" { "folder" } else { "name" };
+    format!("give another {name} to {option}")
+}

@@ -1,0 +1,182 @@
+//! Places of outputs.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, stdout};
+use std::path::{Path, PathBuf};
+
+use crate::identity::{is_open_at, is_same_file};
+use crate::writer::{NewFile, Sink};
+use crate::{Error, FileWriter, Inputs, is_of_person, writing};
+
+/// Whether a name is that of standard output: `-`, or one of the file or device that it was opened as.
+fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-") || is_open_at(stdout(), path)
+}
+
+/// The file that a name leads to, or would create, by its path without symbolic links. None for a device, a pipe, or a
+/// file that this process was started with: no other file can take its name.
+fn file_at(path: &Path) -> io::Result<Option<PathBuf>> {
+    if is_standard_output(path) || path.starts_with("/dev/fd") || path.starts_with("/proc") {
+        return Ok(None);
+    }
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        Ok(metadata) if metadata.is_file() => path.canonicalize().map(Some),
+        Ok(_) => Ok(None),
+        // Whoever creates the file or its folder says what is missing.
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Ok(Some(without_links(path)))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// The file that a name that leads to none would create. A link that leads to none yet is followed.
+fn without_links(path: &Path) -> PathBuf {
+    let file = fs::read_link(path).map_or_else(|_| path.to_owned(), |target| folder_of(path).join(target));
+    match (folder_of(&file).canonicalize(), file.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => file,
+    }
+}
+
+/// The folder of a file.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A file that is about to be written, where it overwrites no input.
+#[derive(Clone, Debug)]
+pub struct OutputFile {
+    path: PathBuf,
+    option: &'static str,
+    /// Where the file is; none for a stream.
+    pub(crate) file: Option<PathBuf>,
+    /// Whether it replaces a recording of a person.
+    pub(crate) overwrites: bool,
+}
+
+impl OutputFile {
+    /// A result by the name that the user gave to `option`; `-` is standard output. Rejects a name that has a recording
+    /// of a person.
+    pub fn new(path: &Path, option: &'static str, inputs: &Inputs) -> Result<Self, Error> {
+        Self::replacing(path, option, inputs, false)
+    }
+
+    /// As [`Self::new`], for a file that replaces a recording of a person if it `overwrites`.
+    pub fn replacing(path: &Path, option: &'static str, inputs: &Inputs, overwrites: bool) -> Result<Self, Error> {
+        let output = Self::at(path, option, inputs, overwrites)?;
+        if !overwrites && output.file.as_deref().is_some_and(is_of_person) {
+            return Err(Error::OfPerson(output.path, option));
+        }
+        Ok(output)
+    }
+
+    /// A recording of a person, which replaces a file only if it `overwrites`.
+    pub fn recording(path: &Path, option: &'static str, inputs: &Inputs, overwrites: bool) -> Result<Self, Error> {
+        let output = Self::at(path, option, inputs, overwrites)?;
+        output.check_new()?;
+        Ok(output)
+    }
+
+    fn at(path: &Path, option: &'static str, inputs: &Inputs, overwrites: bool) -> Result<Self, Error> {
+        let file = file_at(path).map_err(writing(path))?;
+        let output = Self { path: path.to_owned(), option, file, overwrites };
+        output.check_inputs(inputs)?;
+        let earlier = output.file.as_ref().and_then(|file| fs::metadata(file).ok());
+        if earlier.is_some_and(|earlier| earlier.permissions().readonly()) {
+            return Err(Error::Protected(output.path, option));
+        }
+        Ok(output)
+    }
+
+    /// Rejects an output that would overwrite an input.
+    pub fn check_inputs(&self, inputs: &Inputs) -> Result<(), Error> {
+        let beside = self.file.iter().flat_map(|file| [hidden_beside(file), partial_beside(file)]);
+        match [self.path.clone()].into_iter().chain(beside).find(|path| inputs.has(path)) {
+            Some(input) => Err(Error::Input(input, self.option)),
+            None => Ok(()),
+        }
+    }
+
+    /// Rejects an output that would overwrite another one of the same command.
+    pub fn check_apart_from(&self, other: &Self) -> Result<(), Error> {
+        let is_same = |(file, other): (&Path, &Path)| file == other || is_same_file(file, other);
+        if self.file.as_deref().zip(other.file.as_deref()).is_some_and(is_same) {
+            return Err(Error::Twice(self.path.clone(), self.option));
+        }
+        Ok(())
+    }
+
+    /// Rejects a recording that would replace a file, unless it overwrites.
+    pub fn check_new(&self) -> Result<(), Error> {
+        if !self.overwrites && self.file.as_deref().is_some_and(Path::exists) {
+            return Err(Error::Exists(self.path.clone(), self.option));
+        }
+        Ok(())
+    }
+
+    /// The path, as the user gave it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether the output goes to standard output, where no messages for people belong then.
+    pub fn is_standard_output(&self) -> bool {
+        is_standard_output(&self.path)
+    }
+
+    /// Whether the output has a name that other files can stand beside.
+    pub fn is_file(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// Starts to write the file. It is whole, or as it was before, until [`FileWriter::commit`].
+    pub fn create(&self) -> Result<FileWriter, Error> {
+        let sink = match &self.file {
+            Some(file) => Sink::File(NewFile::open(&self.path, file, &hidden_beside(file))?),
+            None if self.is_standard_output() => Sink::StandardOutput,
+            None => Sink::Stream(File::options().append(true).open(&self.path).map_err(writing(&self.path))?),
+        };
+        Ok(FileWriter::new(&self.path, sink))
+    }
+
+    /// Starts to write a log that others read while it grows. It replaces an earlier file at once, and always has whole
+    /// rows.
+    pub fn create_live(&self) -> Result<FileWriter, Error> {
+        self.create()?.live()
+    }
+
+    /// Writes the whole file.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), Error> {
+        self.filled(bytes)?.commit()
+    }
+
+    /// As [`Self::write`], before the commit.
+    pub fn filled(&self, bytes: &[u8]) -> Result<FileWriter, Error> {
+        let mut writer = self.create()?;
+        writer.write_out(bytes).map_err(|error| writer.error(error))?;
+        Ok(writer)
+    }
+
+    /// Writes the whole file unless there is one already, and returns whether it did.
+    pub fn write_new(&self, bytes: &[u8]) -> Result<bool, Error> {
+        if self.file.as_deref().is_some_and(Path::exists) {
+            return Ok(false);
+        }
+        self.write(bytes).map(|()| true)
+    }
+}
+
+/// Where a result is written until it is whole.
+fn hidden_beside(file: &Path) -> PathBuf {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!(".{name}.frixel-tmp"))
+}
+
+/// Where a recording is written until it is whole.
+pub(crate) fn partial_beside(file: &Path) -> PathBuf {
+    let mut name = file.file_name().unwrap_or_default().to_owned();
+    name.push(".partial");
+    file.with_file_name(name)
+}
