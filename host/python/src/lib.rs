@@ -10,6 +10,7 @@ mod error;
 mod fit;
 mod input;
 mod model;
+mod output;
 mod profile;
 mod recording;
 mod scene;
@@ -32,9 +33,11 @@ mod _frixel {
     #[pymodule_export]
     use super::model::{contact_scales, eval_contact, invert_contact};
     #[pymodule_export]
+    use super::output::write_files;
+    #[pymodule_export]
     use super::profile::{bundled_profiles, check_profile};
     #[pymodule_export]
-    use super::recording::{play_fields, read_parquet, replay, write_parquet};
+    use super::recording::{parquet, play_fields, read_parquet, replay};
     #[pymodule_export]
     use super::scene::Scene;
     #[pymodule_export]

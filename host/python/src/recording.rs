@@ -1,9 +1,6 @@
 //! Recordings: columns as arrays, and as Parquet.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::PathBuf;
 
 use frixel_felt::recorder::Marker;
 use frixel_lab::recording::{
@@ -12,7 +9,7 @@ use frixel_lab::recording::{
 use frixel_lab::simulate::PlayOptions;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use super::error::raised;
@@ -67,20 +64,19 @@ fn numbers(column: &Bound<'_, PyAny>) -> PyResult<impl Iterator<Item = Option<f6
     Ok(column.as_array().to_vec().into_iter().map(|value| value.is_finite().then_some(value)))
 }
 
-/// Writes a play as Parquet, as `frixel play --record` does. `made` is what [`super::simulator::simulate`] or
-/// [`super::device::Device`] says of it.
+/// A play as Parquet, the bytes of the file that `frixel play --record` writes. `made` is what
+/// [`super::simulator::simulate`] or [`super::device::Device`] says of it.
 #[pyfunction]
-pub(crate) fn write_parquet(
-    py: Python<'_>,
-    path: PathBuf,
+pub(crate) fn parquet<'py>(
+    py: Python<'py>,
     columns: Bound<'_, PyDict>,
     scene: String,
     files: NamedFiles,
     made: &str,
     participant: Option<String>,
-) -> PyResult<()> {
+) -> PyResult<Bound<'py, PyBytes>> {
     let failed = |error: &dyn std::fmt::Display| {
-        raised(py, "FrixelError", (format!("{}: this file cannot be written ({error})", path.display()),))
+        raised(py, "FrixelError", (format!("this recording cannot be written ({error})"),))
     };
     let mut taken = Vec::new();
     for field in fields() {
@@ -102,9 +98,9 @@ pub(crate) fn write_parquet(
     let metadata = Metadata { scene, files, later_scenes, markers, participant, ..metadata };
     let recording = Recording { metadata, columns: taken, is_cut_off: false };
     check_length(recording.rows() as u64, recording.columns.len()).map_err(|error| failed(&error))?;
-    let file = File::create(&path).map_err(|error| failed(&error))?;
-    let written = py.detach(|| recording.write_parquet(BufWriter::new(file)));
-    written.map_err(|error| failed(&error))
+    let mut bytes = Vec::new();
+    py.detach(|| recording.write_parquet(&mut bytes)).map_err(|error| failed(&error))?;
+    Ok(PyBytes::new(py, &bytes))
 }
 
 /// A finger or a screen in place of the scene's own: the text of its file, and its name.

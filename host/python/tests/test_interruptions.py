@@ -115,7 +115,7 @@ def test_a_full_disk_loses_the_trial_that_ran(tmp_path: Path, what: str) -> None
     assert "File too large" in said
     assert "all answered trials are kept; check the free space, and run the session again" in said
     assert "trial 2 is lost: it was not answered; those before it are kept" in said
-    assert not list(tmp_path.rglob("*partial")), "what did not fit takes no room"
+    assert not list(tmp_path.rglob("*frixel-tmp")), "what did not fit takes no room"
     goes_on(tmp_path, rows(tmp_path), lambda: Child(tmp_path))
 
 

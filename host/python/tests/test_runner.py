@@ -98,7 +98,8 @@ def test_help_and_noise(tmp_path: Path) -> None:
     assert ran("--noise", tmp_path / "noise.wav", "unused").returncode == 0
     with wave.open(str(tmp_path / "noise.wav")) as noise:
         assert noise.getnframes() == 60 * noise.getframerate()
-    assert "cannot be written" in ran("--noise", tmp_path / "noise.wav", "unused").stderr
+    assert "is there already" in ran("--noise", tmp_path / "noise.wav", "unused").stderr
+    assert "cannot be written" in ran("--noise", tmp_path / "nowhere" / "noise.wav", "unused").stderr
 
 
 def test_the_board_drives_the_voltage_of_a_level() -> None:

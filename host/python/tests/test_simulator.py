@@ -164,8 +164,45 @@ def test_a_recording_as_parquet_has_what_the_command_records(tmp_path: Path, sce
     copy = pickle.loads(pickle.dumps(recording))
     copy.to_parquet(tmp_path / "copy.parquet")
     assert (tmp_path / "copy.parquet").read_bytes() == ours.read_bytes()
-    with pytest.raises(frixel.FrixelError, match="this file cannot be written"):
+    with pytest.raises(frixel.FrixelError, match=r"ours\.parquet cannot be written .*: check the folder"):
         recording.to_parquet(tmp_path / "nowhere" / "ours.parquet")
+
+
+def test_a_recording_of_a_person_is_replaced_only_with_overwrite(tmp_path: Path) -> None:
+    path, simulated = tmp_path / "P07.parquet", Simulator(FLAT).run(0.1)
+    simulated.to_parquet(path)
+    simulated.to_parquet(path, participant="P07")
+    made = json.loads(simulated.made)
+    made["metadata"]["is_simulated"] = False
+    dataclasses.replace(simulated, made=json.dumps(made)).to_parquet(path)
+    stroke = tmp_path / "stroke.csv"
+    stroke.write_text("t_s,x_mm,y_mm\n0,1,2\n")
+    for kept in (path, stroke):
+        content = kept.read_bytes()
+        with pytest.raises(frixel.FrixelError, match="is a recording of a person: give another name, or `overwrite="):
+            simulated.to_parquet(kept)
+        assert kept.read_bytes() == content
+        simulated.to_parquet(kept, overwrite=True)
+        assert Recording.load(kept) == simulated
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits are those of Unix")
+def test_a_full_disk_leaves_the_earlier_recording(tmp_path: Path) -> None:
+    import resource
+
+    path, recording = tmp_path / "me.parquet", Simulator(FLAT).run(0.1)
+    recording.to_parquet(path)
+    content = path.read_bytes()
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    # The limit of the process stands for the disk: a write beyond it fails in the middle.
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(content) // 2, hard))
+    try:
+        with pytest.raises(frixel.FrixelError, match=r"me\.parquet cannot be written \(File too large"):
+            recording.to_parquet(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == content
+    assert list(tmp_path.iterdir()) == [path], "what did not fit takes no room"
 
 
 T_S = np.linspace(0, 0.6, 61)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _display, _frixel
-from ._arguments import mapping, participant_code, refusal, shown
+from ._arguments import flag, mapping, participant_code, refusal, shown
 from ._arguments import path as checked_path
 from ._arguments import text as checked_text
 from ._files import name_of, read_bytes
@@ -149,24 +149,36 @@ class Recording(Mapping[str, NDArray[Any]]):
         times = ("t_s", self.columns["t_s"], described["t_s"])
         return _installed("xarray").Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
 
-    def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None) -> None:
+    def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None, overwrite: bool = False) -> None:
         """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
 
         All that made the play is in the metadata of the file, so that `frixel replay` plays it again: the scene with
-        its files, finger, screen, touch source, stroke, seeds, rate and versions. `participant` is the code of a
-        person, 1 to 32 letters, digits, `-`, `_` and `.`.
+        its files, finger, screen, touch source, stroke, seeds, rate and versions.
+
+        Parameters
+        ----------
+        path
+            The file. An earlier one stays until the disk has the whole new one.
+        participant
+            The code of a person, 1 to 32 letters, digits, `-`, `_` and `.`.
+        overwrite
+            Replace a recording of a person, too.
 
         Raises
         ------
         FrixelError
-            The file cannot be written.
+            The file cannot be written, or is a recording of a person, by its content; it is as before.
         ParameterError
             The participant is no code.
         """
+        path, overwrite = checked_path("path", path), flag("overwrite", overwrite)
+        _frixel.write_files({path: self._parquet(participant)}, overwrite)
+
+    def _parquet(self, participant: str | None) -> bytes:
+        """The bytes of the file of `to_parquet`."""
         participant = None if participant is None else participant_code(participant)
         columns = {name: values.tolist() if values.dtype.kind == "U" else values for name, values in self.items()}
-        path = checked_path("path", path)
-        _frixel.write_parquet(path, columns, self.scene.text, self.scene.compiled.files, self.made, participant)
+        return _frixel.parquet(columns, self.scene.text, self.scene.compiled.files, self.made, participant)
 
     def _repr_html_(self) -> str:
         lines = {"reference_n": ("#888", self["reference_n"]), "felt_n": ("#c33", self["felt_n"])}

@@ -7,7 +7,6 @@ function of a text, so that `map(sweep.play, cells)` works with processes, Dask 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from os import PathLike
 from typing import Any
 
@@ -139,23 +138,18 @@ class Study:
             A file cannot be written, and those of before are as they were; or the folder has another study.
         """
         folder, overwrite = checked_path("folder", folder), flag("overwrite", overwrite)
-        partials = {folder / name: folder / f".{name}.partial" for name in self.files}
+        files = {folder / name: content for name, content in self.files.items()}
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            for path in [] if overwrite else partials:
-                if path.exists() and read_bytes(path, "this study", FrixelError) != self.files[path.name]:
-                    raise FrixelError(
-                        f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
-                    )
-            for path, partial in partials.items():
-                partial.write_bytes(self.files[path.name])
-            for path, partial in partials.items():
-                partial.replace(path)
+            there = [] if overwrite else [path for path in files if path.exists()]
         except OSError as error:
-            for partial in partials.values():
-                with suppress(OSError):
-                    partial.unlink()
             raise FrixelError(f"{folder}: this study cannot be written ({error.strerror})") from error
+        for path in there:
+            if read_bytes(path, "this study", FrixelError) != files[path]:
+                raise FrixelError(
+                    f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
+                )
+        _frixel.write_files(files, overwrite)
 
     def _rows(self, name: str) -> list[dict[str, Any]]:
         return _tables.rows(self.files[name].decode())

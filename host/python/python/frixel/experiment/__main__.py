@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import json
 import logging
 import math
@@ -22,10 +23,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import Device, FrixelError, ParameterError
+from .. import Device, FrixelError, ParameterError, _frixel
 from . import _detection as detection
 from ._estimate import Answers, Estimate
-from ._folder import ExperimentError, write_text
+from ._folder import ExperimentError, write
 from ._methods import ConstantStimuli, Method, QuestPlus, UpDown
 from ._observer import Observer
 from ._psychometric import TWO_ALTERNATIVES
@@ -214,21 +215,22 @@ def experiment(arguments: argparse.Namespace) -> None:
         say(f"  is there already {path}")
         return
     assert finger.text is not None
-    write_text(path, finger.text, "the profile")
+    write(path, finger.text.encode(), "the profile")
     say(f"  wrote            {path}")
 
 
 def write_noise(path: Path, seed: int) -> None:
     """White noise at a quarter of full scale, which masks what an electrode sounds like."""
     noise = np.random.default_rng(seed).integers(-(2**13), 2**13, NOISE_S * NOISE_HZ, dtype=np.int16)
-    try:
-        with path.open("xb") as file, wave.open(file, "wb") as written:
-            written.setnchannels(1)
-            written.setsampwidth(2)
-            written.setframerate(NOISE_HZ)
-            written.writeframes(noise.astype("<i2").tobytes())
-    except OSError as error:
-        raise ExperimentError(f"{path} cannot be written ({error.strerror}): give another name") from error
+    if path.exists():
+        raise ExperimentError(f"{path} is there already: give another name")
+    content = io.BytesIO()
+    with wave.open(content, "wb") as written:
+        written.setnchannels(1)
+        written.setsampwidth(2)
+        written.setframerate(NOISE_HZ)
+        written.writeframes(noise.astype("<i2").tobytes())
+    _frixel.write_files({path: content.getvalue()}, False)
     say(f"  wrote            {path}")
 
 

@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from .. import _frixel
 from .._files import read_bytes
 from ..errors import FrixelError
 from ..recording import Recording
@@ -73,17 +74,16 @@ class Folder:
 
     def _kept(self, recording: Recording, participant: str) -> str:
         folder = self._path / RECORDINGS
-        partial = folder / ".partial"
         try:
             if not folder.is_dir():
                 folder.mkdir()
                 _sync_folder(self._path)
-            recording.to_parquet(partial, participant=participant)
-            name = f"{RECORDINGS}/{sha256(partial.read_bytes())}.parquet"
-            _commit(partial, self._path / name)
+            content = recording._parquet(participant)
         except (OSError, FrixelError) as error:
-            partial.unlink(missing_ok=True)
-            raise _unwritable("a recording", error, "check the free space, and run the session again") from error
+            raise _unwritable("a recording", error) from error
+        name = f"{RECORDINGS}/{sha256(content)}.parquet"
+        # A file of this name has the same content.
+        write(self._path / name, content, "a recording", overwrite=True)
         return name
 
     def recording(self, name: str) -> bytes:
@@ -119,7 +119,7 @@ class Folder:
             with suppress(OSError):
                 os.truncate(path, before or 0)
             answer = f"the answer of trial {row['number']}"
-            raise _unwritable(answer, error, "check the free space, and run the session again") from error
+            raise _unwritable(answer, error) from error
         except BaseException:
             if path.exists() and path.stat().st_size == whole:
                 self.rows.append(row)
@@ -152,19 +152,19 @@ class Folder:
         return {RECORDINGS: {}, **earlier}
 
     def _write_manifest(self, manifest: dict[str, Any]) -> None:
-        write_text(self._path / "manifest.json", json.dumps(manifest, indent=2) + "\n", "the manifest")
+        write(self._path / "manifest.json", (json.dumps(manifest, indent=2) + "\n").encode(), "the manifest")
         self._manifest = manifest
 
 
-def write_text(path: Path, text: str, what: str) -> None:
-    """Writes a file, `what` in messages, that has its name once the disk has all of it."""
-    partial = path.with_name(f"{path.name}.partial")
+def write(path: Path, content: bytes, what: str, *, overwrite: bool = False) -> None:
+    """Writes a file, `what` in messages, that has its name once the disk has all of it.
+
+    It replaces a recording of a person only with `overwrite`.
+    """
     try:
-        partial.write_text(text, encoding="utf-8")
-        _commit(partial, path)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise _unwritable(what, error, "check the free space, and run the session again") from error
+        _frixel.write_files({path: content}, overwrite)
+    except FrixelError as error:
+        raise _unwritable(what, error) from error
 
 
 def sha256(content: bytes) -> str:
@@ -172,17 +172,12 @@ def sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _unwritable(what: str, error: Exception, advice: str) -> ExperimentError:
+def _unwritable(what: str, error: Exception) -> ExperimentError:
     reason = error.strerror if isinstance(error, OSError) else str(error)
-    return ExperimentError(f"{what} cannot be written ({reason}): all answered trials are kept; {advice}")
-
-
-def _commit(partial: Path, path: Path) -> None:
-    """Gives a file its name once the disk has all of it."""
-    with partial.open("rb+") as file:
-        os.fsync(file.fileno())
-    partial.replace(path)
-    _sync_folder(path.parent)
+    return ExperimentError(
+        f"{what} cannot be written ({reason}): all answered trials are kept; check the free space, and run the session "
+        "again"
+    )
 
 
 def _sync_folder(path: Path) -> None:
