@@ -37,7 +37,7 @@ export const BEGINNINGS = [
   {
     name: "picture",
     words: "The grain of a photo of wood, rough where it is bright; or a picture of yours.",
-    layer: { name: "wood", kind: "bitmap", picture: "textures/wood.jpg", x_mm: 15, y_mm: 10, width_mm: 90 },
+    layer: { name: "wood", kind: "bitmap", picture: "textures/wood.jpg", levels: "stretch", x_mm: 15, y_mm: 10, width_mm: 90 },
   },
   {
     name: "noise",
@@ -45,8 +45,8 @@ export const BEGINNINGS = [
     layer: {
       name: "sand",
       kind: "noise",
-      wavelength_min_mm: 3,
-      wavelength_max_mm: 8,
+      wavelength_min_mm: 1.5,
+      wavelength_max_mm: 3,
       low_fraction: 0,
       high_fraction: 0.9,
     },
@@ -105,7 +105,7 @@ export function pictureLayer(picture, aspect, screen, taken) {
   const part = taken?.length ? PART : { width: PICTURE_PART, height: PICTURE_PART };
   const widest = Math.min(widthMm * part.width, heightMm * part.height * aspect);
   const { x, y, width } = roomFor(widest, widest / aspect, screen, taken ?? []);
-  return { name: picture.replace(/\.\w+$/, ""), kind: "bitmap", picture, x_mm: x, y_mm: y, width_mm: width };
+  return { name: picture.replace(/\.\w+$/, ""), kind: "bitmap", picture, levels: "stretch", x_mm: x, y_mm: y, width_mm: width };
 }
 
 /**

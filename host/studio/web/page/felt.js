@@ -118,7 +118,7 @@ function row({ name, perceived, felt }, scale) {
   const title = element("th", { scope: "row", title: felt }, shortName(name));
   if (!perceived) return element("tr", {}, title, element("td", { colSpan: 4, className: "soft" }, "hidden"));
   const { texture } = perceived;
-  const hertz = texture ? `${Math.round(texture.frequencyHz)} Hz at ${texture.speedMmPerS} mm/s` : "–";
+  const hertz = texture ? `${Math.round(texture.frequencyHz)} Hz at ${Math.round(texture.speedMmPerS)} mm/s` : "–";
   const most = millinewtons(Math.max(perceived.fromN, perceived.toN));
   const friction = element("td", {}, stepBar(perceived, scale), " ", element("span", { className: "number" }, `${most} mN`));
   const cells = [chip(perceived.verdict, felt), weber(perceived), hertz].map((content) => element("td", {}, content));
