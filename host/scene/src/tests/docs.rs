@@ -152,10 +152,13 @@ fn written(number: f64) -> String {
         return format!("{number:e}");
     }
     let text = number.to_string();
-    match text.len() {
-        5..=9 if number >= 1e4 => format!("{},{}", &text[..text.len() - 3], &text[text.len() - 3..]),
-        _ => text,
+    if number.abs() < 1e4 || number.fract() != 0.0 {
+        return text;
     }
+    let (sign, digits) = text.split_at(usize::from(number < 0.0));
+    let comma = |place: usize| if place > 0 && (digits.len() - place).is_multiple_of(3) { "," } else { "" };
+    let grouped = digits.char_indices().map(|(place, digit)| format!("{}{digit}", comma(place)));
+    format!("{sign}{}", grouped.collect::<String>())
 }
 
 /// The documentation with its tables of fields rewritten.
