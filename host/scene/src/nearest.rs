@@ -15,7 +15,7 @@ pub struct Nearest {
 
 /// Common words for terms of a scene, each with a remark. If a word occurs several times, the first entry whose term is
 /// valid in the context counts.
-const SYNONYMS: [(&str, &str, &str); 22] = [
+const SYNONYMS: [(&str, &str, &str); 34] = [
     ("file", "picture", ""),
     ("image", "picture", ""),
     ("photo", "picture", ""),
@@ -27,6 +27,18 @@ const SYNONYMS: [(&str, &str, &str); 22] = [
     ("slider", "edge", ", one for each detent, with `repeat`"),
     ("detent", "edge", ""),
     ("line", "edge", ""),
+    ("bump", "edge", ""),
+    ("ridge", "edge", ""),
+    ("groove", "edge", ", with a negative ridge over a layer that it lowers"),
+    ("click", "edge", " or `button`, which both have a click"),
+    ("stripes", "grating", ""),
+    ("wave", "grating", ""),
+    ("texture", "noise", ", or `bitmap` for a picture of one"),
+    ("plate", "constant", ", with a `region`"),
+    ("dot", "constant", ", with `shape = \"ellipse\"` in its `region`"),
+    ("circle", "constant", ", with `shape = \"ellipse\"` in its `region`"),
+    ("circle", "ellipse", ", as wide as it is high"),
+    ("oval", "ellipse", ""),
     ("notification", "vibration", ", with `live = true`, so that a program can trigger it"),
     ("buzz", "vibration", ""),
     ("key", "button", ""),

@@ -14,13 +14,17 @@ use frixel_hil_sim::TouchConfig;
 use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, parse_touch_source,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, is_picture,
+    parse_touch_source,
 };
 use thiserror::Error;
 
 use crate::input;
 
 pub(crate) use files::SceneFiles;
+
+/// First bytes of a file, by which a picture is known.
+const SIGNATURE_BYTES: u64 = 8;
 
 /// Why a scene file could not be loaded.
 #[derive(Debug, Error)]
@@ -32,6 +36,12 @@ pub enum SceneFileError {
         file: String,
         /// Error of the operating system.
         source: io::Error,
+    },
+    /// The scene file is a picture.
+    #[error("{file}: this is a picture, not a scene file; make a scene of it: frixel new NAME --picture {file}")]
+    Picture {
+        /// Path of the picture, as the caller gave it.
+        file: String,
     },
     /// The file of a finger, a screen or a touch source could not be read.
     #[error("{file}: this {what} cannot be read ({source}): {}", profile_advice(.nearest, .file))]
@@ -54,13 +64,14 @@ impl SceneFileError {
     /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` holds the operating system's
     /// error message when the file could not be read.
     pub fn to_json(&self) -> String {
-        match self {
+        let (file, reason) = match self {
             Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {
-                serde_json::json!({ "file": file, "unreadable": source.to_string(), "mistakes": [], "has_more": false })
-                    .to_string()
+                (file, source.to_string())
             }
-            Self::Compile(error) => error.to_json(),
-        }
+            Self::Picture { file } => (file, "it is a picture".to_owned()),
+            Self::Compile(error) => return error.to_json(),
+        };
+        serde_json::json!({ "file": file, "unreadable": reason, "mistakes": [], "has_more": false }).to_string()
     }
 }
 
@@ -82,23 +93,32 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
     let mut files = SceneFiles::new(path);
-    match input::read(path, input::TOML_MAX_BYTES) {
+    match read(path) {
         Ok(bytes) => {
             files.keep_scene(&bytes);
             let named = NamedFiles { folder: folder_of(path), files: RefCell::new(files) };
             let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
             (scene, named.files.into_inner())
         }
-        Err(source) => (Err(SceneFileError::Unreadable { file, source }), files),
+        Err(error) => (Err(error), files),
     }
+}
+
+/// The bytes of a scene file.
+fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
+    let file = path.display().to_string();
+    // A photograph may be larger than any scene.
+    if input::read_head(path, SIGNATURE_BYTES).is_ok_and(|head| is_picture(&head)) {
+        return Err(SceneFileError::Picture { file });
+    }
+    input::read(path, input::TOML_MAX_BYTES).map_err(|source| SceneFileError::Unreadable { file, source })
 }
 
 /// Reads a scene file with the bytes of the files that it names, for whoever plays it without them. Results call it
 /// `name`.
 pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
     let file = path.display().to_string();
-    let read = input::read(path, input::TOML_MAX_BYTES);
-    let bytes = read.map_err(|source| SceneFileError::Unreadable { file: file.clone(), source })?;
+    let bytes = read(path)?;
     let kept = KeptFiles { folder: folder_of(path), kept: RefCell::default() };
     Scene::parse_bytes(&bytes, &file, &kept)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{scene, succeed};
+use super::{frixel, scene, succeed};
 
 /// Colours of the map that cover more than 200 pixels, without greys.
 fn map_colours(path: &Path) -> usize {
@@ -50,5 +50,28 @@ fn the_map_of_a_play_shows_what_only_a_sliding_finger_or_time_brings() {
         let colours = map_colours(&folder.path().join("frixel-out/scene.png"));
         // The stroke itself is red.
         assert!(colours > colours_min, "{name}: {colours} colours");
+    }
+}
+
+/// A photograph is larger than any scene may be, and its first bytes tell what it is.
+#[test]
+fn a_picture_in_place_of_a_scene_leads_to_the_command_that_makes_one() {
+    let folder = TempDir::new().unwrap();
+    let mut photo = b"\xff\xd8\xff\xe0".to_vec();
+    photo.resize(5 << 20, 0);
+    std::fs::write(folder.path().join("photo.jpg"), photo).unwrap();
+    for picture in [scene("textures/brick.png"), "photo.jpg".to_owned()] {
+        let output = frixel(folder.path(), &["check", &picture]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(
+            (output.status.code(), said),
+            (
+                Some(1),
+                format!(
+                    "frixel: {picture}: this is a picture, not a scene file; make a scene of it: frixel new NAME \
+                     --picture {picture}\n"
+                )
+            )
+        );
     }
 }

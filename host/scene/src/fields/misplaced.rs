@@ -44,6 +44,8 @@ const TABLES: &str = "version = 1\n[drive]\n[screen]\n[finger]\n[carrier]\n[touc
     [[layer]]\nkind = \"constant\"\nregion = { shape = \"polygon\" }\n";
 /// The tables inside a layer.
 const INSIDE_LAYERS: [&str; 3] = ["region", "repeat", "burst"];
+/// Fields of the scene itself, which belong above its tables.
+const ABOVE_TABLES: [&str; 3] = ["finger", "screen", "include"];
 /// The tables that a field may belong to, in the order in which they are tried.
 const KEYS: [&str; 9] = ["region", "repeat", "burst", "drive", "finger", "screen", "carrier", "touch", "design"];
 
@@ -75,6 +77,18 @@ pub(super) fn report(
     // The known fields themselves result from reading tables.
     if unknown.is_empty() || log.is_describing() {
         return misplaced;
+    }
+    for field in unknown.iter().filter(|field| !key.is_empty() && ABOVE_TABLES.contains(&field.name.as_str())) {
+        misplaced.fields.push(field.name.clone());
+        let written = brief(log.source().word_at(field.value_offset)).into_owned();
+        let mistake = FieldMistake::Misplaced {
+            fields: vec![field.name.clone()],
+            table: table.to_owned(),
+            home: if key == "layer" { "above the first [[layer]]" } else { "above the first line in brackets" }
+                .to_owned(),
+            write: format!("`{} = {written}` below `version`", field.name),
+        };
+        log.add(field.offset, mistake);
     }
     for home in HOMES.iter().filter(|home| home.key != key) {
         let is_inside = INSIDE_LAYERS.contains(&home.key);
@@ -113,10 +127,36 @@ pub(super) fn report(
     misplaced
 }
 
-/// Advice that follows the parser's message on a text that is not TOML; empty for an unknown mistake.
-pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
+/// The place and the reason of a mistake that the parser found at `offset`, with advice.
+pub(super) fn explained(text: &str, offset: usize, reason: &str) -> (usize, String) {
     let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
-    let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default().trim();
+    let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+    match invisible(line) {
+        Some((place, name)) => (line_start + place, format!("{name} stands here; replace it by a plain space")),
+        None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
+    }
+}
+
+/// The first invisible character of a line outside of quotation marks and comments, with its name.
+fn invisible(line: &str) -> Option<(usize, String)> {
+    let code = line.split('#').next().unwrap_or_default();
+    let is_quoted = |place: usize| code.get(..place).is_some_and(|before| before.matches('"').count() % 2 == 1);
+    let name = |character: char| match character {
+        '\u{a0}' | '\u{2007}' | '\u{202f}' => Some("a no-break space"),
+        '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{ad}' | '\u{feff}' => Some("an invisible character"),
+        _ if character.is_whitespace() && !character.is_ascii() => Some("a space that is not a plain one"),
+        _ => None,
+    };
+    let found = code.char_indices().filter(|(place, _)| !is_quoted(*place));
+    found
+        .filter_map(|(place, character)| {
+            Some((place, format!("{} (U+{:04X})", name(character)?, u32::from(character))))
+        })
+        .next()
+}
+
+/// Advice that follows the parser's message on a text that is not TOML; empty for an unknown mistake.
+fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> String {
     let has_single = || text.lines().any(|line| line.trim_start().starts_with("[layer]"));
     let value = line.split_once('=').map(|(_, value)| value.split('#').next().unwrap_or_default().trim());
     if let Some(after) = text.get(offset..).and_then(|rest| rest.strip_prefix(',')) {
@@ -129,6 +169,8 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
         "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
     } else if value.is_some_and(|value| value.starts_with(CURLY_QUOTES)) {
         "; quotation marks are straight: \"".to_owned()
+    } else if value.is_some_and(has_unit) {
+        format!("; {UNIT_ADVICE}")
     } else if let Some(percent) = value.and_then(percent) {
         format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
     } else if value.is_some_and(|value| value.contains('\\'))
@@ -137,6 +179,8 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
         format!("; {SLASH_ADVICE}")
     } else if value == Some("") {
         "; the value after the `=` is missing".to_owned()
+    } else if let Some(words) = value.filter(|value| are_bare_words(value)) {
+        format!("; write a text in quotation marks: \"{}\"", brief(words))
     } else {
         String::new()
     }
@@ -144,6 +188,22 @@ pub(super) fn syntax_hint(text: &str, offset: usize) -> String {
 
 /// Quotation marks that text editors put in place of straight ones.
 const CURLY_QUOTES: [char; 6] = ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{ab}'];
+
+/// What to do about a number with a unit.
+pub(super) const UNIT_ADVICE: &str = "leave the unit out: the field's name has it";
+
+/// Whether a value is a number with a unit behind it, as in `4 mm`.
+pub(super) fn has_unit(value: &str) -> bool {
+    let is_of_unit = |character: char| character.is_alphabetic() || "°/".contains(character);
+    let number = value.trim_end_matches(is_of_unit);
+    number != value && number.trim_end().parse::<f64>().is_ok()
+}
+
+/// Whether a value is words that lack quotation marks.
+fn are_bare_words(value: &str) -> bool {
+    let is_of_words = |character: char| character.is_alphanumeric() || " _-./".contains(character);
+    value.starts_with(char::is_alphabetic) && value.chars().all(is_of_words)
+}
 
 /// The number of a value with a percent sign.
 fn percent(value: &str) -> Option<f64> {

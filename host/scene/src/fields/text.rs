@@ -31,11 +31,12 @@ pub(crate) fn parsed<'i>(file: &'i SourceFile, log: &mut Log) -> Option<DeTable<
     match toml(&file.text) {
         Ok(values) => Some(moved_table(values, file.start)),
         Err((offset, mistake)) => {
-            let mistake = match mistake {
+            let (offset, mistake) = match mistake {
                 FileMistake::Syntax(reason) => {
-                    FileMistake::Syntax(reason + &misplaced::syntax_hint(&file.text, offset))
+                    let (offset, reason) = misplaced::explained(&file.text, offset, &reason);
+                    (offset, FileMistake::Syntax(reason))
                 }
-                other => other,
+                other => (offset, other),
             };
             log.add(file.start + offset, mistake);
             None

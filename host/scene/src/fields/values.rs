@@ -4,6 +4,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
 use super::Fields;
+use super::misplaced::has_unit;
 use crate::digits::digits;
 use crate::grammar::{Absence, Axis, FieldSpec, Holds, LengthFields, Range};
 use crate::log::Log;
@@ -366,7 +367,12 @@ fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeVa
         _ => None,
     };
     let Some(found) = found else {
-        log.add(offset, wrong_type(field, "a number", value.get_ref()));
+        let advice = value.get_ref().as_str().and_then(quoted_number_advice);
+        let mistake = match advice {
+            Some(advice) => FieldMistake::QuotedNumber { field, advice },
+            None => wrong_type(field, "a number", value.get_ref()),
+        };
+        log.add(offset, mistake);
         return None;
     };
     if found >= range.min && found <= range.max {
@@ -374,6 +380,15 @@ fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeVa
     }
     log.add(offset, FieldMistake::OutOfRange { field, found, min: range.min, max: range.max, unit: range.unit });
     None
+}
+
+/// What to do about a number in quotation marks; `None` for other texts.
+fn quoted_number_advice(text: &str) -> Option<&'static str> {
+    match text.trim() {
+        text if text.parse::<f64>().is_ok() => Some("leave the quotation marks out"),
+        text if has_unit(text) => Some("leave the quotation marks out and the unit, which the field's name has"),
+        _ => None,
+    }
 }
 
 fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> FieldMistake {

@@ -55,6 +55,14 @@ pub enum FieldMistake {
         /// The type that was found.
         found: &'static str,
     },
+    /// A number is in quotation marks.
+    #[error("`{field}` must be a number, found a text: {advice}")]
+    QuotedNumber {
+        /// The field.
+        field: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
     /// A value is not a table.
     #[error("`{field}` must be a table, found {found}: write {write}")]
     NotATable {

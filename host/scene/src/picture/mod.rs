@@ -72,6 +72,11 @@ pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
     Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
+/// Whether bytes begin as a PNG or JPEG file does.
+pub fn is_picture(bytes: &[u8]) -> bool {
+    bytes.starts_with(from_png::SIGNATURE) || bytes.starts_with(from_jpeg::SIGNATURE)
+}
+
 impl Picture {
     /// Decodes the bytes of a PNG or JPEG file of at most `pixels_max` pixels.
     pub(super) fn decode(bytes: &[u8], pixels_max: usize) -> Result<Self, PictureError> {
