@@ -154,7 +154,21 @@ fn advice_that_is_followed_ends_in_felt() {
     let faint = "[[layer]]\nkind = \"constant\"\nfriction_fraction = FRACTION\n\
                  region = { x_mm = 40, y_mm = 20, width_mm = 30, height_mm = 30 }\n";
     let edge = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 0.3\nridge_fraction = 0.9\n";
-    for layers in [faint.replace("FRACTION", "0.1"), faint.replace("FRACTION", "0.25"), bar(1.0), edge.to_owned()] {
+    let button = |fields: &str| {
+        format!(
+            "{}[[layer]]\nkind = \"button\"\nrim_width_mm = 4\n\
+             region = {{ x_mm = 40, y_mm = 28, width_mm = 40, height_mm = 24 }}\n{fields}",
+            grating(12.0)
+        )
+    };
+    for layers in [
+        faint.replace("FRACTION", "0.1"),
+        faint.replace("FRACTION", "0.25"),
+        bar(1.0),
+        edge.to_owned(),
+        button("rim_fraction = 0.5\nface_fraction = 0.2\n"),
+        button("rim_fraction = 0.5\nface_fraction = 0.2\ngain = 0.9\nclick_fraction = 0.05\n"),
+    ] {
         let found = judged(&layers, Advice::Sought).layers.pop().unwrap();
         assert_ne!(found.verdict, Verdict::Felt, "{layers}");
         let advice = found.advice.clone().unwrap_or_default();
@@ -168,9 +182,9 @@ fn advice_that_is_followed_ends_in_felt() {
     }
 }
 
-/// A scene with a field in place of what it has, or added.
+/// A scene with a field in place of what its top layer has, or added.
 fn follow(layers: &str, name: &str, field: &str) -> String {
-    let Some(start) = layers.find(&format!("{name} = ")) else { return format!("{layers}{field}\n") };
+    let Some(start) = layers.rfind(&format!("{name} = ")) else { return format!("{layers}{field}\n") };
     let length = layers[start..].find([',', '\n', ' ', '}'].as_slice()).unwrap();
     let end = start + length;
     let end = end + layers[end + 3..].find([',', '\n', ' ', '}'].as_slice()).unwrap() + 3;

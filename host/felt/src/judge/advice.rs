@@ -1,6 +1,6 @@
 //! Changes of an element that may make it perceptible, in the order in which they are tried.
 
-use frixel_layers::{Layer, Region};
+use frixel_layers::{Blend, Layer, Region};
 use frixel_scene::Program;
 
 use super::{Element, LayerVerdict, Reason};
@@ -30,7 +30,7 @@ pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
         gains.chain(strongest(element)).chain(widest(element))
     };
     if found.reasons.iter().any(is_small) {
-        let both = strongest(element).into_iter().flat_map(|strong| {
+        let both = strongest(element).into_iter().chain(widest(element)).flat_map(|strong| {
             SIZES.iter().filter_map(move |factor| {
                 let large = resized(&strong.element, *factor)?;
                 Some(Change { text: format!("{}, {}", large.text, strong.text), ..large })
@@ -144,7 +144,7 @@ fn with_gain(element: &Element, factor: f64) -> Option<Change> {
 /// The element with the largest gain within the drive's reach.
 fn strongest(element: &Element) -> Option<Change> {
     let gain = f64::from(element.program.start.get(element.layer)?.gain);
-    let most = gain_max(element)?;
+    let most = (100.0 * gain_max(element)?).floor() / 100.0;
     (most > gain).then(|| gained(element, most))?
 }
 
@@ -158,8 +158,16 @@ fn gained(element: &Element, gain: f64) -> Option<Change> {
 
 /// The element spanning the drive's full range.
 fn widest(element: &Element) -> Option<Change> {
-    let most_n = (0.99 * element.program.reach.electric_friction_max_n) as f32;
-    changed(element, "low_fraction = 0, high_fraction = 0.99".to_owned(), |program| {
+    let record = element.record().filter(|record| record.blend != Blend::Multiply)?;
+    let reach_n = element.program.reach.electric_friction_max_n;
+    let (low, high, click_n) = match record.layer {
+        Layer::Button(button) if button.face_n > button.rim_n => ("rim", "face", button.click.height_n),
+        Layer::Button(button) => ("face", "rim", button.click.height_n),
+        _ => ("low", "high", 0.0),
+    };
+    let fraction = ((0.99 - f64::from(click_n).max(0.0) / reach_n) * 100.0).floor() / 100.0;
+    let gain = if element.program.start.get(element.layer)?.gain.total_cmp(&1.0).is_eq() { "" } else { ", gain = 1" };
+    let change = changed(element, format!("{low}_fraction = 0, {high}_fraction = {fraction}{gain}"), |program| {
         program.start.get_mut(element.layer)?.gain = 1.0;
         let record = program.records.get_mut(element.layer)?;
         record.gain = 1.0;
@@ -169,9 +177,13 @@ fn widest(element: &Element) -> Option<Change> {
             Layer::Spokes(spokes) => (&mut spokes.trough_n, &mut spokes.crest_n),
             Layer::Noise(noise) => (&mut noise.low_n, &mut noise.high_n),
             Layer::Vibration(vibration) => (&mut vibration.low_n, &mut vibration.high_n),
+            Layer::Button(button) if button.face_n > button.rim_n => (&mut button.rim_n, &mut button.face_n),
+            Layer::Button(button) => (&mut button.face_n, &mut button.rim_n),
             _ => return None,
         };
-        (*low_n, *high_n) = (0.0, most_n);
+        (*low_n, *high_n) = (0.0, (fraction * reach_n) as f32);
         Some(())
-    })
+    })?;
+    let Program { start, .. } = &change.element.program;
+    change.element.program.clamped_with(start).is_none().then_some(change)
 }
