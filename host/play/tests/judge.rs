@@ -84,6 +84,22 @@ fn sureness(verdict: Verdict) -> usize {
         .unwrap()
 }
 
+/// The middle row lies on a border of the spokes, where the finger is on neither side for long.
+#[test]
+fn spokes_are_felt_however_they_are_turned() {
+    for (number, angle_deg) in [(7, 0), (8, 0), (12, 0), (12, 10), (24, 0)] {
+        let spokes = top(&format!(
+            "[[layer]]\nkind = \"spokes\"\nwave = \"square\"\nx_mm = 60\ny_mm = 40\nnumber = {number}\n\
+             angle_deg = {angle_deg}\nlow_fraction = 0\nhigh_fraction = 0.9\n"
+        ));
+        assert!(
+            spokes.verdict == Verdict::Felt && spokes.contrast.verdict == Verdict::Felt,
+            "{number} spokes at {angle_deg}: {}",
+            feel::sentence(&spokes)
+        );
+    }
+}
+
 #[test]
 fn reasons_name_what_is_in_the_way() {
     let slope = top(&grating(500.0));

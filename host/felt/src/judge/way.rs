@@ -22,6 +22,10 @@ const STEP_M: f64 = 2.5e-4;
 const END_PART: f64 = 1e-4;
 /// Factor by which friction must change more on a way to prefer it to an earlier one.
 const BETTER: f64 = 1.05;
+/// Where a finger meant to slide along a way may be beside it, m: reports of touch scatter by a fraction of a millimetre.
+const BESIDE_M: [f64; 3] = [-2.5e-4, 0.0, 2.5e-4];
+/// The part of its change that a steady way keeps if friction is averaged over [`BESIDE_M`].
+const STEADY_PART: f64 = 0.5;
 
 /// A straight way, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +38,7 @@ impl Way {
     /// The way across a layer with the largest changes of friction, and 10 mm beyond both ends, within the screen;
     /// `None` for a layer that is visible nowhere. Changes of `below` do not count. A layer that depends on the
     /// direction is crossed along its axis.
+    /// A way along a border, where friction changes a little beside it, is taken only if there is no other.
     pub(super) fn across(
         layer: usize,
         axis_turns: Option<f64>,
@@ -47,8 +52,17 @@ impl Way {
             None => Self::rows_and_columns(bounds_m),
         };
         let visible = ways.into_iter().filter_map(|way| way.longest_visible(layer, reference));
-        let parts = visible.map(|way| way.extended(screen_m).liveliest_part([reference, below]));
-        parts.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best }).map(|(way, _)| way)
+        let parts: Vec<(Self, f64)> =
+            visible.map(|way| way.extended(screen_m).liveliest_part([reference, below])).collect();
+        let best = |is_taken: &dyn Fn(&(Self, f64)) -> bool| {
+            parts.iter().copied().fold(None, |best: Option<(Self, f64)>, other| {
+                let is_better = best.is_none_or(|best| other.1 > BETTER * best.1);
+                if is_better && is_taken(&other) { Some(other) } else { best }
+            })
+        };
+        let is_steady =
+            |(way, change_n): &(Self, f64)| way.steady_change_n([reference, below]) >= STEADY_PART * change_n;
+        best(&is_steady).or_else(|| best(&|_| true)).map(|(way, _)| way)
     }
 
     /// A stroke along the way at constant speed, and back if `there_and_back`.
@@ -138,32 +152,56 @@ impl Way {
 
     /// The first part of at most [`LENGTH_MAX_M`] with the largest changes of friction in either direction, and its
     /// change, N.
-    fn liveliest_part(self, [reference, below]: [&Reference; 2]) -> (Self, f64) {
-        let length_m = self.length_m();
-        let count = (length_m / STEP_M) as usize + 1;
-        let [x, y] = self.direction();
-        let friction_n = |direction: [f64; 2], number: usize| {
-            let (x_m, y_m) = self.at((number as f64 / count as f64).clamp(END_PART, 1.0 - END_PART));
-            let context = Context { x_m, y_m, speed_m_per_s: 0.05, direction, ..Context::default() };
-            reference.electric_friction_at_n(&context) - below.electric_friction_at_n(&context)
-        };
-        let [there_n, back_n] = [[x, y], [-x, -y]]
-            .map(|direction| (0..=count).map(|number| friction_n(direction, number)).collect::<Vec<f64>>());
+    fn liveliest_part(self, references: [&Reference; 2]) -> (Self, f64) {
+        let frictions_n = self.frictions_n(references, &[0.0]);
+        let count = self.steps();
         let window = ((LENGTH_MAX_M / STEP_M) as usize).min(count) + 1;
         let step = (window / 8).max(1);
-        let last = there_n.len() - window;
+        let last = count + 1 - window;
         let starts = (0..last).step_by(step).chain([last]);
         let change_n = |from: usize| {
-            let spread_n = |friction_n: &[f64]| {
-                let Interval { low, high } = Interval::of(friction_n.get(from..from + window)?.iter().copied());
-                Some(high - low)
-            };
-            Some(spread_n(&there_n)?.max(spread_n(&back_n)?))
+            let parts_n = frictions_n.iter().filter_map(|friction_n| friction_n.get(from..from + window));
+            parts_n.map(spread_n).fold(0.0, f64::max)
         };
-        let changes = starts.filter_map(|start| Some((start, change_n(start)?)));
+        let changes = starts.map(|start| (start, change_n(start)));
         let best = changes.reduce(|best, other| if other.1 > BETTER * best.1 { other } else { best });
         let (start, change_n) = best.unwrap_or((0, 0.0));
         let part = |number: usize| number as f64 / count as f64;
         (self.part(part(start), part(start + window - 1)), change_n)
     }
+
+    /// The change of friction on the way, there or back, that remains if the finger is now and then beside it, N.
+    fn steady_change_n(&self, references: [&Reference; 2]) -> f64 {
+        self.frictions_n(references, &BESIDE_M).iter().map(|friction_n| spread_n(friction_n)).fold(0.0, f64::max)
+    }
+
+    /// Steps of about [`STEP_M`] that the way has.
+    fn steps(&self) -> usize {
+        (self.length_m() / STEP_M) as usize + 1
+    }
+
+    /// Friction after each step of the way, there and back, N: the mean over places so far `beside_m` it.
+    fn frictions_n(&self, [reference, below]: [&Reference; 2], beside_m: &[f64]) -> [Vec<f64>; 2] {
+        let count = self.steps();
+        let [x, y] = self.direction();
+        let friction_n = |direction: [f64; 2], number: usize, beside_m: f64| {
+            let (x_m, y_m) = self.at((number as f64 / count as f64).clamp(END_PART, 1.0 - END_PART));
+            let (x_m, y_m) = (x_m - beside_m * y, y_m + beside_m * x);
+            let context = Context { x_m, y_m, speed_m_per_s: 0.05, direction, ..Context::default() };
+            reference.electric_friction_at_n(&context) - below.electric_friction_at_n(&context)
+        };
+        [[x, y], [-x, -y]].map(|direction| {
+            let mean_n = |number: usize| {
+                let sum_n: f64 = beside_m.iter().map(|beside_m| friction_n(direction, number, *beside_m)).sum();
+                sum_n / beside_m.len() as f64
+            };
+            (0..=count).map(mean_n).collect()
+        })
+    }
+}
+
+/// From the least to the largest friction, N.
+fn spread_n(friction_n: &[f64]) -> f64 {
+    let Interval { low, high } = Interval::of(friction_n.iter().copied());
+    high - low
 }
