@@ -5,6 +5,7 @@
 //! - [`IdealMonitor`]: the monitor readings of an ideal amplifier.
 //! - [`Random`]: random numbers that depend on the seed only, not on the platform.
 //! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
+//! - `examples`: the scenes in a page of documentation.
 //! - `golden`: files of the repository that a test makes anew and compares.
 //!
 //! ```
@@ -22,6 +23,8 @@
 
 #[cfg(feature = "std")]
 pub mod corpus;
+#[cfg(feature = "std")]
+pub mod examples;
 #[cfg(feature = "std")]
 pub mod golden;
 

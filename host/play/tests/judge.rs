@@ -10,10 +10,13 @@ use frixel_felt::judge::{Advice, Judgement, LayerVerdict, Reason, Verdict};
 use frixel_hil_sim::{Board, RigConfig, TouchConfig};
 use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::{Program, Scene, compile};
+use frixel_testkit::examples;
 
 fn program(text: &str) -> Program {
     let board = RigConfig::default().board;
-    let scene = Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
+    let brick = include_bytes!("../../../scenes/textures/brick.png");
+    let files = BTreeMap::from([("textures/brick.png".to_owned(), brick.to_vec())]);
+    let scene = Scene::parse(text, "scene.toml", &files).unwrap();
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -97,6 +100,22 @@ fn spokes_are_felt_however_they_are_turned() {
             "{number} spokes at {angle_deg}: {}",
             feel::sentence(&spokes)
         );
+    }
+}
+
+/// Layers and clicks that people copy. No study covers what a program streams.
+#[test]
+fn the_examples_of_the_docs_are_felt() {
+    let examples = examples::blocks(include_str!("../../../docs/scene.md"));
+    for example in examples.iter().filter(|example| example.contains("[[layer]]")) {
+        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
+        let program = program(&examples::below_head(examples[0], example));
+        let expected = if example.contains("kind = \"stream\"") { Verdict::Unknown } else { Verdict::Felt };
+        for found in judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap().layers {
+            assert_eq!(found.verdict, expected, "{}\n{example}", feel::sentence(&found));
+            let is_felt = found.click.is_none_or(|click| click.verdict == Verdict::Felt);
+            assert!(is_felt, "{}\n{example}", feel::sentence(&found));
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_testkit::golden;
+use frixel_testkit::{examples, golden};
 
 use super::*;
 use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
@@ -21,28 +21,14 @@ fn kinds() -> impl Iterator<Item = &'static str> {
     KindName::ALL.iter().map(|(word, _)| *word)
 }
 
-/// The TOML examples.
-fn examples() -> Vec<&'static str> {
-    DOCS.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect()
-}
-
-/// The head, except for the tables that the example contains itself.
-fn head_for(head: &str, example: &str) -> String {
-    let tables = head.split("\n\n").filter(|table| {
-        let name = table.lines().next().unwrap_or_default().trim_matches(['[', ']']);
-        !example.contains(&format!("[{name}]"))
-    });
-    tables.collect::<Vec<_>>().join("\n\n")
-}
-
 #[test]
 fn every_example_compiles() {
-    let examples = examples();
+    let examples = examples::blocks(DOCS);
     let (head, rest) = examples.split_first().expect("there is a head");
     compile_text(head).expect("the head compiles");
     assert!(rest.len() >= 8, "{}", rest.len());
     for example in rest {
-        let text = format!("{}\n{example}", head_for(head, example));
+        let text = examples::below_head(head, example);
         if let Err(error) = compile_text(&text) {
             panic!("{error}\n{text}");
         }
@@ -224,24 +210,24 @@ fn a_default_is_what_a_file_without_the_field_means() {
 
 /// The last example of a table or of a kind of layer, as a scene that ends with that table.
 fn example_of(table: &str, top: bool) -> Option<String> {
-    let head = examples()[0];
+    let examples = examples::blocks(DOCS);
     let is_of = |example: &&str| {
         if top { example.starts_with(&format!("[{table}]")) } else { example.contains(&format!("kind = \"{table}\"")) }
     };
     let layer = "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
-    let example = examples().into_iter().skip(1).find(is_of)?;
+    let example = examples.iter().copied().skip(1).find(is_of)?;
     let own = if top {
         example.to_owned()
     } else {
         example.split("[[layer]]").find(|layer| layer.contains(&format!("kind = \"{table}\"")))?.to_owned()
     };
-    let head = head_for(head, example);
-    Some(if top { format!("{head}\n{layer}\n{own}") } else { format!("{head}\n[[layer]]{own}") })
+    let whole = if top { format!("{layer}\n{own}") } else { format!("[[layer]]{own}") };
+    Some(examples::below_head(examples[0], &whole))
 }
 
 #[test]
 fn numbers_in_the_text_are_right() {
-    let program = compile_text(examples()[0]).expect("the head compiles");
+    let program = compile_text(examples::blocks(DOCS)[0]).expect("the head compiles");
     let reach = program.reach;
     assert!(DOCS.contains(&format!("At 150 V rms it feels {:.2} mN more", 1e3 * reach.electric_friction_max_n)));
     assert!(DOCS.contains(&format!("{} N. At 150 V", reach.natural_friction_n)));
