@@ -24,19 +24,16 @@ pub(super) struct ScoreArgs {
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
-    /// Path of the finger: `human` for generated people with the accelerations of recorded ones after smoothing,
-    /// `human-rough` for those before smoothing, `sweep` for an even sweep over the screen, or a CSV file with the
-    /// columns `t_s,x_mm,y_mm`.
+    /// Strokes: `human`, `human-rough` (rough accelerations), `sweep`, or a CSV file (`t_s,x_mm,y_mm`).
     #[arg(long, default_value = "human", value_name = "NAME|FILE")]
     stroke: String,
-    /// Play under the fingers of so many people, drawn from an assumed population, whom the board does not know; each
-    /// makes strokes of their own. Without it, the finger is the scene's.
+    /// Play under N people of an assumed population, each with strokes of their own, not under the scene's finger.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     people: Option<u64>,
     /// Number of human strokes, of each person.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
     strokes: u64,
-    /// Repetitions of each stroke. Load, noise and lost reports are others in each, and on each stroke.
+    /// Repetitions of each stroke, each with other loads, noise and lost reports.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
     /// Length of a generated stroke.
