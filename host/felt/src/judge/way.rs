@@ -22,7 +22,7 @@ const STEP_M: f64 = 2.5e-4;
 const END_PART: f64 = 1e-4;
 /// Factor by which friction must change more on a way to prefer it to an earlier one.
 const BETTER: f64 = 1.05;
-/// Where a finger meant to slide along a way may be beside it, m: reports of touch scatter by a fraction of a millimetre.
+/// Offsets of a finger from the way that it is meant to follow, m: touch reports scatter by that much.
 const BESIDE_M: [f64; 3] = [-2.5e-4, 0.0, 2.5e-4];
 /// The part of its change that a steady way keeps if friction is averaged over [`BESIDE_M`].
 const STEADY_PART: f64 = 0.5;

@@ -147,12 +147,9 @@ fn invisible(line: &str) -> Option<(usize, String)> {
         _ if character.is_whitespace() && !character.is_ascii() => Some("a space that is not a plain one"),
         _ => None,
     };
-    let found = code.char_indices().filter(|(place, _)| !is_quoted(*place));
-    found
-        .filter_map(|(place, character)| {
-            Some((place, format!("{} (U+{:04X})", name(character)?, u32::from(character))))
-        })
-        .next()
+    let mut unquoted = code.char_indices().filter(|(place, _)| !is_quoted(*place));
+    unquoted
+        .find_map(|(place, character)| Some((place, format!("{} (U+{:04X})", name(character)?, u32::from(character)))))
 }
 
 /// Advice that follows the parser's message on a text that is not TOML; empty for an unknown mistake.
