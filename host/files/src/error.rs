@@ -13,6 +13,9 @@ pub enum Error {
     /// The operating system does not write it. The text is advice.
     #[error("{0} cannot be written ({1}): {advice}", advice = check_path(.0, .2))]
     Unwritable(PathBuf, io::Error, &'static str),
+    /// Standard output is not written.
+    #[error("standard output cannot be written ({0}): keep its reader running, or give a file")]
+    StandardOutput(io::Error),
     /// The file is whole, under the last path, but does not get its name.
     #[error(
         "{0} cannot be replaced ({1}); the new one is whole, in {2}: close the program that has the old one open, and \

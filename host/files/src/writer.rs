@@ -88,7 +88,8 @@ impl FileWriter {
         let advice = match &self.sink {
             Sink::File(new) if new.keeps_rows => "its rows until then are kept; check the free space of its folder",
             Sink::File(_) => "no cut file is left; check the free space of its folder",
-            _ => return writing(&self.path)(error),
+            Sink::Stream(_) => return writing(&self.path)(error),
+            Sink::StandardOutput => return Error::StandardOutput(error),
         };
         Error::Unwritable(self.path.clone(), error, advice)
     }

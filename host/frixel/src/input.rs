@@ -17,6 +17,13 @@ pub(crate) fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
     Ok(text)
 }
 
+/// Reads the first bytes of a regular file of any size, at most `max_bytes` of them.
+pub(crate) fn read_head(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    open(path, u64::MAX)?.take(max_bytes).read_to_end(&mut head)?;
+    Ok(head)
+}
+
 /// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]
 /// are dropped, and bytes that are not UTF-8 replaced.
 pub(crate) fn next_line(input: &mut impl BufRead) -> Option<String> {

@@ -155,7 +155,7 @@ fn the_reference_has_the_load_and_the_noise_of_the_finger() {
     let turns = play_constant(folder.path(), &["--times", "3"]);
     assert!(number(&turns, "reference_min_n") > 0.15, "{turns}");
     let felt = fs::read_to_string(folder.path().join("frixel-out/felt.csv")).unwrap();
-    let said = succeed(folder.path(), &["play", "constant.toml", "--seconds", "0.1"]);
+    let said = succeed(folder.path(), &["play", "constant.toml", "--seconds", "0.1", "--verbose"]);
     assert!(
         said.contains(" mN, assumed, at the load of the finger that plays; not where the finger lands or turns"),
         "{said}"

@@ -111,7 +111,7 @@ fn the_examples_of_the_docs_are_felt() {
         let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
         let program = program(&examples::below_head(examples[0], example));
         let expected = if example.contains("kind = \"stream\"") { Verdict::Unknown } else { Verdict::Felt };
-        for found in judge(&program, &rig, None, Advice::Omitted, TO_THE_END).unwrap().layers {
+        for found in judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers {
             assert_eq!(found.verdict, expected, "{}\n{example}", feel::sentence(&found));
             let is_felt = found.click.is_none_or(|click| click.verdict == Verdict::Felt);
             assert!(is_felt, "{}\n{example}", feel::sentence(&found));
