@@ -86,7 +86,9 @@ impl FileWriter {
 
     pub(crate) fn error(&self, error: io::Error) -> Error {
         let advice = match &self.sink {
-            Sink::File(new) if new.keeps_rows => "its rows until then are kept; check the free space of its folder",
+            Sink::File(new) if new.keeps_rows && new.file.metadata().is_ok_and(|file| file.len() > 0) => {
+                "its rows until then are kept; check the free space of its folder"
+            }
             Sink::File(_) => "no cut file is left; check the free space of its folder",
             Sink::Stream(_) => return writing(&self.path)(error),
             Sink::StandardOutput => return Error::StandardOutput(error),
@@ -186,7 +188,7 @@ impl NewFile {
 
     /// Whether these bytes are no row yet, for which the rows of an earlier recording are not given up.
     fn waits_for_row(&self, bytes: &[u8]) -> bool {
-        self.keeps_rows && self.begins_at.is_some() && !has_rows(bytes)
+        self.keeps_rows && self.begins_at == Some(0) && !has_rows(bytes)
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {

@@ -22,11 +22,40 @@ fn checked(path: &Path) -> Vec<LayerVerdict> {
     judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers
 }
 
+/// Stripes under layers that start off: one replaces the stripes everywhere, and one comes in bursts.
+const OFF: &str = "\
+version = 1
+[[layer]]
+kind = \"grating\"
+wavelength_mm = 10
+low_fraction = 0
+high_fraction = 0.9
+[[layer]]
+name = \"cover\"
+kind = \"constant\"
+live = true
+start = \"off\"
+friction_fraction = 0.5
+[[layer]]
+name = \"alarm\"
+kind = \"vibration\"
+live = true
+start = \"off\"
+frequency_hz = 90
+low_fraction = 0
+high_fraction = 0.5
+burst = { on_ms = 100, period_ms = 2000 }
+";
+
 /// The score of the scene's own finger has the verdicts of the check.
 #[test]
 fn a_check_and_a_score_agree() {
-    for name in ["bars", "slider", "rare"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../play/tests/verdicts/{name}.toml"));
+    let scenes = tempfile::tempdir().unwrap();
+    let off = scenes.path().join("off.toml");
+    fs::write(&off, OFF).unwrap();
+    let listed = |name| Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../play/tests/verdicts/{name}.toml"));
+    for path in ["bars", "slider", "rare"].map(listed).into_iter().chain([off]) {
+        let name = path.display();
         let out = tempfile::tempdir().unwrap();
         let options = ["score", path.to_str().unwrap(), "--strokes", "1", "--seeds", "1", "--seconds", "0.5", "--json"];
         let output = run(out.path(), &options);

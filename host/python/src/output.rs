@@ -1,6 +1,6 @@
 //! Files that the Python files write.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use frixel_files::{Error, Inputs, OutputFile, commit_all};
 use pyo3::prelude::*;
@@ -18,7 +18,8 @@ const OPTION: &str = "the file";
 pub(crate) fn write_files(py: Python<'_>, files: Bound<'_, PyDict>, overwrite: bool) -> PyResult<()> {
     let mut given: Vec<(PathBuf, PyBackedBytes)> = Vec::new();
     for (path, bytes) in files {
-        given.push((path.extract()?, bytes.extract()?));
+        // A path, and never standard output: `./-` is a file.
+        given.push((Path::new(".").join(path.extract::<PathBuf>()?), bytes.extract()?));
     }
     let written = py.detach(|| {
         let filled = given

@@ -215,7 +215,7 @@ pub(super) mod finger {
         "stress_exponent",
         Range::new(0.02, 1.0, ""),
         Mistake,
-        "stress exponent of a soft finger: strain is proportional to stress^(1/exponent)",
+        "stress exponent of a soft finger: strain is proportional to stress^exponent",
     );
     pub(crate) const SHAPE_CONSTANT: FieldSpec =
         number("shape_constant", Range::new(0.001, 1_000.0, ""), Mistake, "constant `B` of a soft finger, Eq. (24)");

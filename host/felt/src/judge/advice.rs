@@ -166,6 +166,9 @@ fn widest(element: &Element) -> Option<Change> {
         _ => ("low", "high", 0.0),
     };
     let fraction = ((0.99 - f64::from(click_n).max(0.0) / reach_n) * 100.0).floor() / 100.0;
+    if fraction <= 0.0 {
+        return None;
+    }
     let gain = if element.program.start.get(element.layer)?.gain.total_cmp(&1.0).is_eq() { "" } else { ", gain = 1" };
     let change = changed(element, format!("{low}_fraction = 0, {high}_fraction = {fraction}{gain}"), |program| {
         program.start.get_mut(element.layer)?.gain = 1.0;

@@ -200,7 +200,7 @@ fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
 }
 
 /// Largest number of layers that a sentence names; the others are counted.
-pub(crate) const NAMED_MAX: usize = 3;
+pub const NAMED_MAX: usize = 3;
 
 /// Speed below which the finger counts as resting, as on the board, m/s: friction does not follow the scene before it
 /// slides.
@@ -304,12 +304,13 @@ pub fn starts_off(program: &Program) -> Option<String> {
     let titles: Vec<&LayerTitle> = off.map(|(title, _)| title).collect();
     let number = titles.first()?.number();
     let mut named = fold_copies(&titles);
-    let starts = if titles.len() == 1 { "starts" } else { "start" };
+    let (starts, it) =
+        if titles.len() == 1 { ("starts", "it".to_owned()) } else { ("start", format!("layer {number}")) };
     let more = named.len().saturating_sub(NAMED_MAX);
     named.truncate(NAMED_MAX);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     Some(format!(
-        "{}{more} {starts} off: the line `trigger {number}` plays it (frixel play --control)",
+        "{}{more} {starts} off: the line `trigger {number}` plays {it} (frixel play --control)",
         named.join(", ")
     ))
 }

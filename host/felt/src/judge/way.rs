@@ -22,9 +22,11 @@ const STEP_M: f64 = 2.5e-4;
 const END_PART: f64 = 1e-4;
 /// Factor by which friction must change more on a way to prefer it to an earlier one.
 const BETTER: f64 = 1.05;
-/// Offsets of a finger from the way that it is meant to follow, m: touch reports scatter by that much.
+/// Offsets of a finger from the way that it is meant to follow, m. Assumed: a little more than the steps of a touch
+/// source.
 const BESIDE_M: [f64; 3] = [-2.5e-4, 0.0, 2.5e-4];
-/// The part of its change that a steady way keeps if friction is averaged over [`BESIDE_M`].
+/// The part of its change that a steady way keeps if friction is averaged over [`BESIDE_M`], and of the largest change
+/// of any way that it has to have. Assumed.
 const STEADY_PART: f64 = 0.5;
 
 /// A straight way, m.
@@ -37,8 +39,8 @@ pub(super) struct Way {
 impl Way {
     /// The way across a layer with the largest changes of friction, and 10 mm beyond both ends, within the screen;
     /// `None` for a layer that is visible nowhere. Changes of `below` do not count. A layer that depends on the
-    /// direction is crossed along its axis.
-    /// A way along a border, where friction changes a little beside it, is taken only if there is no other.
+    /// direction is crossed along its axis. A way along a border, where friction changes a little beside it, is taken
+    /// only if no other has half of its changes.
     pub(super) fn across(
         layer: usize,
         axis_turns: Option<f64>,
@@ -60,8 +62,10 @@ impl Way {
                 if is_better && is_taken(&other) { Some(other) } else { best }
             })
         };
-        let is_steady =
-            |(way, change_n): &(Self, f64)| way.steady_change_n([reference, below]) >= STEADY_PART * change_n;
+        let largest_n = parts.iter().map(|(_, change_n)| *change_n).fold(0.0, f64::max);
+        let is_steady = |(way, change_n): &(Self, f64)| {
+            *change_n >= STEADY_PART * largest_n && way.steady_change_n([reference, below]) >= STEADY_PART * change_n
+        };
         best(&is_steady).or_else(|| best(&|_| true)).map(|(way, _)| way)
     }
 

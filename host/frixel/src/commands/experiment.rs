@@ -5,6 +5,7 @@ use crate::rigs::PortLink;
 use anyhow::{Result, anyhow, bail};
 use frixel_driver::Device;
 use frixel_files::OutputFile;
+use frixel_model::TouchBound;
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
@@ -13,6 +14,8 @@ use super::terminal::note;
 
 /// Highest voltage of an experiment, in volts rms.
 const VOLTAGE_MAX_V_RMS: f64 = 150.0;
+/// Carrier of an experiment's scene, which names none.
+const CARRIER_HZ: f32 = 1000.0;
 /// Part of a board's peak voltage that an experiment drives. A square carrier's peak is its rms; its edges need a
 /// little more.
 const PEAK_SHARE: f64 = 0.99;
@@ -34,9 +37,10 @@ pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<P
 }
 
 /// The highest voltage of an experiment, in volts rms: the given one, which must be within the board's limit, or else
-/// what the board allows, up to 150.
+/// what the board allows at this carrier, up to 150.
 pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits) -> Result<f64> {
-    let limit_v_rms = PEAK_SHARE * f64::from(limits.voltage_max_v_peak);
+    let touch_v_peak = TouchBound::behind(limits.series_resistance_ohm).voltage_max_v_peak(CARRIER_HZ);
+    let limit_v_rms = PEAK_SHARE * f64::from(limits.voltage_max_v_peak.min(touch_v_peak));
     match given_v_rms {
         None => Ok(limit_v_rms.min(VOLTAGE_MAX_V_RMS)),
         Some(volts) if volts <= limit_v_rms => Ok(volts),
@@ -58,4 +62,25 @@ pub(super) fn cut_off(recording: &OutputFile, advice: &str, error: anyhow::Error
         return anyhow!("{error}; what was recorded until then is in {}: {advice}", recording.partial().display());
     }
     error
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_hil_sim::Board;
+    use frixel_lab::calibration::Protocol;
+    use frixel_scene::{Scene, compile};
+
+    use super::highest_voltage;
+
+    #[test]
+    fn a_board_plays_an_experiment_at_its_highest_voltage() {
+        for board in [Board::SIMULATOR, Board::NUCLEO_G474RE, Board::PICO_2] {
+            let highest_v_rms = highest_voltage(None, &board.limits).unwrap();
+            let scene = Protocol::new(highest_v_rms, 1).scene().unwrap();
+            let scene = Scene::parse(&scene, "calibration", &BTreeMap::new()).unwrap();
+            compile(&scene, &board.limits, board.tick_hz).unwrap();
+        }
+    }
 }

@@ -95,8 +95,7 @@ fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
     let way = match args.stroke.as_str() {
         "human" => Way::Human,
         "human-rough" => Way::HumanRough,
-        // `natural` is the name that it had before.
-        "sweep" | "natural" => Way::Sweep,
+        "sweep" => Way::Sweep,
         file => Way::Stroke(stroke::from_file(Path::new(file))?),
     };
     Ok(TrialPlan {

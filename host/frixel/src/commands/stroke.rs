@@ -58,7 +58,7 @@ pub(super) struct StrokeArgs {
     )]
     times: Option<u32>,
     /// Start and end a straight stroke at rest, as a hand does.
-    #[arg(long, alias = "natural", requires = "from", help_heading = RARE)]
+    #[arg(long, requires = "from", help_heading = RARE)]
     minimum_jerk: bool,
 }
 

@@ -247,12 +247,10 @@ impl Report {
         Self { in_this_play, is_judged_in_part: seconds > JUDGED_MAX_S, ..self }
     }
 
-    /// Says that there are no verdicts because something changed the scene, and which layers started off.
+    /// Adds why there are no verdicts, and which layers started off.
     #[must_use]
-    pub(crate) fn with_changes(self, is_changed: bool, starts_off: Option<String>) -> Self {
-        // A scene that was changed may have switched them on.
-        let no_verdict = is_changed.then_some("something changed the scene while it played");
-        Self { no_verdict, starts_off: starts_off.filter(|_| !is_changed), ..self }
+    pub(crate) fn with_notes(self, no_verdict: Option<&'static str>, starts_off: Option<String>) -> Self {
+        Self { no_verdict, starts_off, ..self }
     }
 
     /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced

@@ -61,8 +61,8 @@ pub enum SceneFileError {
 }
 
 impl SceneFileError {
-    /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` holds the operating system's
-    /// error message when the file could not be read.
+    /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` holds the reason why the
+    /// file could not be read.
     pub fn to_json(&self) -> String {
         let (file, reason) = match self {
             Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {

@@ -38,10 +38,6 @@ fn a_straight_stroke_goes_back_and_forth_at_its_speed() {
     assert_eq!(curved.len(), 800);
     // A stroke of minimum jerk begins at rest, and is 1.875 times as fast as on average in its middle.
     assert!(number(&curved, 2, 3) < 10.0 && (number(&curved, 599, 3) - 375.0).abs() < 1.0);
-
-    // The name that the option had before.
-    succeed(folder.path(), &[&from[..], &["--times", "2", "--natural"]].concat());
-    assert_eq!(rows(&folder), curved);
 }
 
 #[test]

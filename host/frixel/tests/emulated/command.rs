@@ -170,10 +170,10 @@ fn a_missing_program_is_named_with_the_command_that_installs_it() {
 fn outside_a_checkout_it_says_what_it_takes() {
     let elsewhere = TempDir::new().unwrap();
     let tools = Tools::new(&[EMULATOR, ("rustc", "echo /")]);
-    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", elsewhere.path().display());
+    let named = format!("`FRIXEL_CHECKOUT={}` is not a checkout of frixel", elsewhere.path().display());
     tools.refused(Some(elsewhere.path()), &[&named, "it has no folder firmware/board-mps2-an386", "or unset it"]);
     let nowhere = elsewhere.path().join("nowhere");
-    let named = format!("`FRIXEL_CHECKOUT={}` names no checkout", nowhere.display());
+    let named = format!("`FRIXEL_CHECKOUT={}` is not a checkout of frixel", nowhere.display());
     tools.refused(Some(&nowhere), &[&named, "there is no such folder", "or unset it"]);
 }
 

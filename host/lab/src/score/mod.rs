@@ -105,7 +105,8 @@ pub struct Score {
 }
 
 impl Score {
-    /// Plays trials of a program on the simulated board in a world, and scores them. Layers that start off are on.
+    /// Plays trials of a program on the simulated board in a world, and scores them. In these plays, layers that start
+    /// off are on.
     ///
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
     /// of threads. When `goes_on` breaks, it is that of what was played.
@@ -115,8 +116,8 @@ impl Score {
         trials: &[Trial],
         goes_on: GoesOn<'_>,
     ) -> Result<Self, SimulationError> {
-        let program = &switched_on(program);
         let fingers = judgements(program, world, trials, goes_on)?;
+        let program = &switched_on(program);
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
             if goes_on().is_break() {

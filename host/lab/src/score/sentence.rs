@@ -1,11 +1,9 @@
 //! What a score says, in a sentence.
 
+use frixel_felt::judge::NAMED_MAX;
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::{LayerScore, LevelScore, Score, Verdicts};
-
-/// Most layers that a sentence names.
-const NAMED_MAX: usize = 3;
 
 impl Score {
     /// The sentence of [`Score::verdict`].
@@ -45,7 +43,10 @@ impl Score {
             _ if by_all.iter().all(|layer| layer.simulated_fingers.touched == fingers) => {
                 format!("{fingers} of {fingers} simulated fingers")
             }
-            _ => format!("those of {fingers} simulated fingers that touched them"),
+            _ => {
+                let them = if by_all.len() == 1 { "it" } else { "them" };
+                format!("those of {fingers} simulated fingers that touched {them}")
+            }
         };
         let (what, is) = match (layers.len(), by_all.len()) {
             (1, _) => ("layer", "is"),

@@ -171,7 +171,7 @@ impl Cell {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
-        let (scene, program) = self.compiled()?;
+        let (scene, world, program) = self.compiled()?;
         let coating_gap_um = scene.screen().coating_gap_um();
         let person = self.person;
         let finger =
@@ -188,7 +188,7 @@ impl Cell {
             median_speed_m_per_s: self.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),
         };
         let trials = trials.trials(&program, Some(finger), goes_on)?;
-        let score = Score::of(&program, &self.world()?, &trials, goes_on)?;
+        let score = Score::of(&program, &world, &trials, goes_on)?;
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 
@@ -197,11 +197,10 @@ impl Cell {
         self.compiled().map(drop)
     }
 
-    fn compiled(&self) -> Result<(Scene, Program), CellError> {
-        self.world()?;
-        let (scene, board) = (self.scene()?, Board::SIMULATOR);
+    fn compiled(&self) -> Result<(Scene, WorldOptions, Program), CellError> {
+        let (scene, world, board) = (self.scene()?, self.world()?, Board::SIMULATOR);
         let program = compile(&scene, &board.limits, board.tick_hz)?;
-        Ok((scene, program))
+        Ok((scene, world, program))
     }
 
     fn scene(&self) -> Result<Scene, CellError> {

@@ -131,25 +131,30 @@ pub(super) fn report(
 pub(super) fn explained(text: &str, offset: usize, reason: &str) -> (usize, String) {
     let line_start = text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1);
     let line = text.get(line_start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
-    match invisible(line) {
-        Some((place, name)) => (line_start + place, format!("{name} stands here; replace it by a plain space")),
+    // A byte order mark begins many files.
+    match invisible(line).filter(|(place, _)| line_start + place > 0) {
+        Some((place, said)) => (line_start + place, said),
         None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
     }
 }
 
-/// The first invisible character of a line outside of quotation marks and comments, with its name.
+/// The place of the first invisible character of a line outside of quotation marks and comments, with what to do.
 fn invisible(line: &str) -> Option<(usize, String)> {
     let code = line.split('#').next().unwrap_or_default();
     let is_quoted = |place: usize| code.get(..place).is_some_and(|before| before.matches('"').count() % 2 == 1);
-    let name = |character: char| match character {
-        '\u{a0}' | '\u{2007}' | '\u{202f}' => Some("a no-break space"),
-        '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{ad}' | '\u{feff}' => Some("an invisible character"),
-        _ if character.is_whitespace() && !character.is_ascii() => Some("a space that is not a plain one"),
-        _ => None,
+    let said = |character: char| {
+        let (name, advice) = match character {
+            '\u{a0}' | '\u{2007}' | '\u{202f}' => ("a no-break space", "replace it by a plain space"),
+            '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{ad}' | '\u{feff}' => ("an invisible character", "remove it"),
+            _ if character.is_whitespace() && !character.is_ascii() => {
+                ("a space that is not a plain one", "replace it by a plain space")
+            }
+            _ => return None,
+        };
+        Some(format!("{name} (U+{:04X}) stands here; {advice}", u32::from(character)))
     };
     let mut unquoted = code.char_indices().filter(|(place, _)| !is_quoted(*place));
-    unquoted
-        .find_map(|(place, character)| Some((place, format!("{} (U+{:04X})", name(character)?, u32::from(character)))))
+    unquoted.find_map(|(place, character)| Some((place, said(character)?)))
 }
 
 /// Advice that follows the parser's message on a text that is not TOML; empty for an unknown mistake.

@@ -202,9 +202,16 @@ impl<L: RecordedLink> Play<'_, L> {
         let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let goes_on = || if is_requested { ControlFlow::Continue(()) } else { self.interrupt.goes_on() };
         let judged = recorder.take_judged();
-        let is_changed = judged.is_none() && target.is_virtual_time();
+        let no_verdict = match (&judged, stream) {
+            (Some(_), _) => None,
+            _ if !target.is_virtual_time() => None,
+            (None, Some(_)) => Some("no study says what a person feels of a stream"),
+            (None, None) => Some("something changed the scene while it played"),
+        };
+        // A line may have switched them on.
+        let starts_off = starts_off(program).filter(|_| self.control.is_none());
         let verdicts = judged.and_then(|samples| in_play(program, &samples, &goes_on));
-        let report = report.with_verdicts(verdicts, recorder.t_s()).with_changes(is_changed, starts_off(program));
+        let report = report.with_verdicts(verdicts, recorder.t_s()).with_notes(no_verdict, starts_off);
         let marked = (recorder.markers(), is_requested || ended.is_err());
         let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.

@@ -17,7 +17,7 @@ use frixel_files::{Inputs, OutputFile};
 
 /// Longest silence of a board that runs the self-test: it counts the clocks of 10,000 frames meanwhile.
 const SILENCE_MAX: Duration = Duration::from_secs(20);
-/// Time within which it asks first, whatever else it says, and after which it is asked again.
+/// Handshake timeout; also the retry interval.
 const FIRST_LINE_MAX: Duration = Duration::from_secs(6);
 const ASK_AGAIN_AFTER: Duration = Duration::from_secs(2);
 /// How long a read waits.
