@@ -1,11 +1,13 @@
 //! What plays and experiments on a board have in common. Experiments take minutes of a person's time, so whatever can
 //! be wrong is found before they begin.
 
+use std::collections::BTreeMap;
+
 use crate::rigs::PortLink;
 use anyhow::{Result, anyhow, bail};
 use frixel_driver::Device;
 use frixel_files::OutputFile;
-use frixel_model::TouchBound;
+use frixel_scene::{Scene, compile};
 use frixel_wire::hello::BoardLimits;
 
 use super::argument::{above_zero_to, number};
@@ -14,11 +16,9 @@ use super::terminal::note;
 
 /// Highest voltage of an experiment, in volts rms.
 const VOLTAGE_MAX_V_RMS: f64 = 150.0;
-/// Carrier of an experiment's scene, which names none.
-const CARRIER_HZ: f32 = 1000.0;
-/// Part of a board's peak voltage that an experiment drives. A square carrier's peak is its rms; its edges need a
-/// little more.
-const PEAK_SHARE: f64 = 0.99;
+/// A scene that drives as much as the board allows, up to that.
+const HIGHEST: &str =
+    "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 1\n[drive]\nvoltage_max_v_rms = 150\n";
 
 /// Connects to the board at a serial port, says what a person should know of it, and rejects one whose electrode may
 /// not be driven. The command takes these boards in place of a port.
@@ -37,10 +37,10 @@ pub(super) fn connect(port: &str, boards: &[&str], arm: bool) -> Result<Device<P
 }
 
 /// The highest voltage of an experiment, in volts rms: the given one, which must be within the board's limit, or else
-/// what the board allows at this carrier, up to 150.
-pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits) -> Result<f64> {
-    let touch_v_peak = TouchBound::behind(limits.series_resistance_ohm).voltage_max_v_peak(CARRIER_HZ);
-    let limit_v_rms = PEAK_SHARE * f64::from(limits.voltage_max_v_peak.min(touch_v_peak));
+/// what the board allows, up to 150.
+pub(super) fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits, tick_hz: u32) -> Result<f64> {
+    let scene = Scene::parse(HIGHEST, "the drive", &BTreeMap::new())?;
+    let limit_v_rms = compile(&scene, limits, tick_hz)?.reach.voltage_max_v_rms;
     match given_v_rms {
         None => Ok(limit_v_rms.min(VOLTAGE_MAX_V_RMS)),
         Some(volts) if volts <= limit_v_rms => Ok(volts),
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn a_board_plays_an_experiment_at_its_highest_voltage() {
         for board in [Board::SIMULATOR, Board::NUCLEO_G474RE, Board::PICO_2] {
-            let highest_v_rms = highest_voltage(None, &board.limits).unwrap();
+            let highest_v_rms = highest_voltage(None, &board.limits, board.tick_hz).unwrap();
             let scene = Protocol::new(highest_v_rms, 1).scene().unwrap();
             let scene = Scene::parse(&scene, "calibration", &BTreeMap::new()).unwrap();
             compile(&scene, &board.limits, board.tick_hz).unwrap();

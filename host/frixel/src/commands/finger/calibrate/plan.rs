@@ -33,7 +33,7 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self> {
-        let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits)?;
+        let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits, tick_hz)?;
         let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
         let scene = protocol.scene().map_err(of_finger)?;
         let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
