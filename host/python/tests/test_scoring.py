@@ -49,7 +49,7 @@ def test_a_score_has_the_bits_of_the_command(
     for name, text in found.files.items():
         assert (tmp_path / name).read_text() == text
     assert found.verdict == json.loads(printed)["verdict"]
-    assert found.words.rstrip().endswith(found.verdict)
+    assert found.words.lstrip().startswith(found.verdict)
     assert [row["layer"] for row in found.layers] == [row["layer"] for row in found.summary["layers"]]
     assert found.numbers["error"]["mean"] == found.summary["metrics"][0]["mean"]
     assert {type(row["contrast_weber_steps"]) for row in found.layers} == {float}
