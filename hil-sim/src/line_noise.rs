@@ -3,7 +3,7 @@
 use crate::error::{OutOfRange, zero_to_one};
 use crate::random::{Purpose, Random};
 
-/// Damage on a bad line. The default is none.
+/// Damage on a bad line. The default line is perfect.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseConfig {
     /// Fraction of inverted bits, from 0 to 1.

@@ -36,7 +36,7 @@ pub fn is_same_name(one: &str, other: &str) -> bool {
     one.nfc().eq(other.nfc())
 }
 
-/// What to do about a path that cannot be used: `advice`, unless the path starts with a tilde.
+/// Advice for a path that cannot be used: `advice`, unless the path starts with a tilde.
 pub fn check_path<'a>(path: &Path, advice: &'a str) -> &'a str {
     if path.starts_with("~") { TILDE_ADVICE } else { advice }
 }

@@ -201,7 +201,7 @@ impl Device {
         self.ask(py, Request::Look)
     }
 
-    /// What [`super::recording::parquet`] needs of a play on this board, beside its rows and its scene.
+    /// Metadata of a play on this board, as JSON, for its recording.
     fn made(&self, py: Python<'_>, messages_per_s: u32) -> PyResult<String> {
         let metadata = Metadata {
             ticks_per_row: self.hello.tick_hz.checked_div(messages_per_s).unwrap_or(0),

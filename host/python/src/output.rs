@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 use super::error::raised;
 
-/// What messages call the name of a file.
+/// Name of the argument in messages.
 const OPTION: &str = "the file";
 
 /// Writes files that belong together, the bytes of each by its path, all of them or none. They replace a recording of a

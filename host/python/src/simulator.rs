@@ -187,8 +187,7 @@ fn is_on_screen(stroke: &SimulatedStroke, [width_m, height_m]: [f64; 2], seconds
     })
 }
 
-/// Plays a scene on the simulated board. Returns the columns of the record, and what
-/// [`super::recording::parquet`] needs beside them.
+/// Plays a scene on the simulated board. Returns the columns of the record, and the metadata of a recording as JSON.
 #[pyfunction]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,

@@ -33,7 +33,7 @@ impl Directory {
         }
     }
 
-    /// Allocates a bitmap in the first sufficient gap. If there is none, returns the size of the largest gap in bytes.
+    /// Allocates a bitmap in the first gap that is large enough, or returns the size of the largest gap in bytes.
     pub(crate) fn allocate(&mut self, width: u16, height: u16, crc32: u32, pool_len: u32) -> Result<StoredBitmap, u32> {
         let len = u32::from(width) * u32::from(height);
         let mut gap_start = 0;

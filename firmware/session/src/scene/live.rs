@@ -53,7 +53,7 @@ impl<'a> Scenes<'a> {
         Ok(Accepted::Done)
     }
 
-    /// Stops taking samples, and lets the ticker play those that have arrived.
+    /// Stops accepting samples. The ticker plays the samples that have arrived.
     pub(crate) fn end_stream(&mut self, orders: &mut Orders<'a>) -> Result<Accepted, Refusal> {
         if !self.stream.is_attached() {
             return Err(Refusal::UnknownCommand);

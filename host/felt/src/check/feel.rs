@@ -3,8 +3,8 @@
 use frixel_scene::LayerTitle;
 
 use crate::judge::{
-    AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, NAMED_MAX, Over, Reason, SizeLimit, Step,
-    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, texture_range_n, weber_steps_text,
+    AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, Over, Reason, SizeLimit, Step,
+    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, named, texture_range_n, weber_steps_text,
 };
 
 /// Largest number of lines about elements; the others are summarised in one line. With the costs, the output fits 40
@@ -15,6 +15,14 @@ const ROW_CHARS: usize = 80;
 const NAME_CHARS: usize = 19;
 /// Lines on layers that are alike; more are counted in one line.
 const ALIKE_LINES_MAX: usize = 2;
+
+/// A name and a text.
+pub type Line = (&'static str, String);
+
+/// Lines as text, each ending in a line feed.
+pub fn text(lines: &[Line]) -> String {
+    lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"))
+}
 
 /// A verdict on a layer, or on its click.
 struct Finding {
@@ -27,12 +35,12 @@ struct Finding {
 
 /// Lines of a name and a text. The first lines are grouped by verdict, the least certain first, with one line for all
 /// elements with the same perception. Indistinguishable layers and notes follow.
-pub fn lines(judgement: &Judgement) -> Vec<(&'static str, String)> {
+pub fn lines(judgement: &Judgement) -> Vec<Line> {
     let mut elements: Vec<Finding> = judgement.layers.iter().flat_map(elements).collect();
     elements.sort_by_key(|element| element.verdict.sureness());
     let has_maybe = elements.iter().any(|element| element.verdict == Verdict::NearThreshold);
     let groups = grouped(elements);
-    let mut lines: Vec<(&'static str, String)> = groups.iter().map(Group::line).collect();
+    let mut lines: Vec<Line> = groups.iter().map(Group::line).collect();
     let rows = lines.iter().scan(0, |rows, (_, text)| {
         *rows += (NAME_CHARS + text.chars().count()).div_ceil(ROW_CHARS);
         Some(*rows)
@@ -91,17 +99,13 @@ struct Group {
 }
 
 impl Group {
-    fn line(&self) -> (&'static str, String) {
+    fn line(&self) -> Line {
         let member = |(element, copies): &(Finding, usize)| {
             let Finding { layer, part, .. } = element;
             if *copies == 0 { format!("{part}{layer}") } else { format!("{part}{layer} and {copies} alike") }
         };
-        let members: Vec<String> = self.members.iter().take(NAMED_MAX).map(member).collect();
-        let more = match self.members.len().saturating_sub(NAMED_MAX) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        (self.verdict.words(), format!("{}{more}: {}", members.join(", "), self.text))
+        let members: Vec<String> = self.members.iter().map(member).collect();
+        (self.verdict.words(), format!("{}: {}", named(&members), self.text))
     }
 
     fn count(&self) -> usize {

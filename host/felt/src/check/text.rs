@@ -2,8 +2,9 @@
 
 use frixel_model::InverseTable;
 
+use super::feel::Line;
 use super::{RamBytes, SceneCheck, feel};
-use crate::judge::NAMED_MAX;
+use crate::judge::named;
 use frixel_scene::{Origin, OutOfReach, TargetRange};
 
 impl SceneCheck {
@@ -24,11 +25,11 @@ impl SceneCheck {
             let features = if board.features.is_empty() { "none".to_owned() } else { board.features.join(", ") };
             lines.extend([("features", features), ("build", board.command.clone())]);
         }
-        lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"))
+        feel::text(&lines)
     }
 
     /// The finger, what can be reached on it, and what the scene targets.
-    fn newtons(&self) -> [(&'static str, String); 3] {
+    fn newtons(&self) -> [Line; 3] {
         let Self { finger, reach, targets, .. } = self;
         let suffix = Origin::newtons_suffix_of(finger.origin);
         // A limit is rounded down, and what is below it never above.
@@ -46,7 +47,7 @@ impl SceneCheck {
     }
 
     /// Whether the board has the cycles and the memory, and which part of them the scene takes.
-    fn fits(&self) -> (&'static str, String) {
+    fn fits(&self) -> Line {
         let Self { tick, ram, wire, .. } = self;
         let is_within =
             tick.cycles <= tick.cycles_limit && ram.bitmap_pool_bytes as u64 <= u64::from(ram.bitmap_pool_limit_bytes);
@@ -62,7 +63,7 @@ impl SceneCheck {
         (if is_within { "fits" } else { "does not fit" }, text)
     }
 
-    fn costs(&self) -> [(&'static str, String); 5] {
+    fn costs(&self) -> [Line; 5] {
         let Self { wire, ram, tick, .. } = self;
         let layers = if tick.layers.is_empty() { String::new() } else { format!(": {}", named(&tick.layers)) };
         [
@@ -114,7 +115,7 @@ fn table(ram: &RamBytes) -> String {
     format!("{table_bytes} of {table_whole_bytes} bytes computed, {cut}; {table_room_bytes} bytes are reserved")
 }
 
-/// What of the targets is out of reach, and is clamped.
+/// Targets out of reach, which are clamped, with their layers.
 fn out_of_reach(targets: &TargetRange) -> Option<String> {
     let part = |outside: &OutOfReach, what: &str| {
         let OutOfReach { screen_percent, layers } = outside;
@@ -124,13 +125,4 @@ fn out_of_reach(targets: &TargetRange) -> Option<String> {
     let parts = [part(&targets.above, "above"), part(&targets.below, "below natural")];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     (!parts.is_empty()).then(|| format!("{}; clamped", parts.join("; ")))
-}
-
-/// At most three layers by their names, and how many more there are.
-fn named(layers: &[String]) -> String {
-    let named = layers.iter().take(NAMED_MAX).cloned().collect::<Vec<String>>().join(", ");
-    match layers.len().saturating_sub(NAMED_MAX) {
-        0 => named,
-        more => format!("{named} and {more} more"),
-    }
 }

@@ -40,7 +40,7 @@ pub struct LayerVerdict {
     pub contrast: Step,
     /// Whether friction is uniform in the layer except for a narrow place that makes the contrast.
     pub is_narrow: bool,
-    /// The most noticeable texture; absent if there is none.
+    /// The most noticeable texture, if the layer has one.
     pub texture: Option<Texture>,
     /// The most certainly perceived border, as a step onto the layer; absent for a layer without a border.
     pub border: Option<BorderStep>,

@@ -18,6 +18,7 @@ mod layer_verdict;
 mod likeness;
 mod measure;
 mod moment;
+mod named;
 mod reason;
 mod spectrum;
 mod step;
@@ -32,8 +33,8 @@ use std::cmp::Ordering;
 
 use frixel_hil_sim::Stroke;
 use frixel_layers::{Layer, Stream};
+use frixel_scene::Program;
 use frixel_scene::reference::Reference;
-use frixel_scene::{LayerTitle, Program, fold_copies};
 
 use crate::GoesOn;
 use crate::fidelity::FidelitySample;
@@ -45,6 +46,8 @@ pub use layer_verdict::{Judgement, LayerVerdict};
 pub use measure::changes_along;
 use measure::{Measure, Measured};
 use moment::Moment;
+pub(crate) use named::named;
+pub use named::{NAMED_MAX, starts_off};
 pub use reason::{Reason, SizeLimit};
 pub(crate) use spectrum::component_power;
 pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};
@@ -199,9 +202,6 @@ fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
     }
 }
 
-/// Largest number of layers that a sentence names; the others are counted.
-pub const NAMED_MAX: usize = 3;
-
 /// Speed below which the finger counts as resting, as on the board, m/s: friction does not follow the scene before it
 /// slides.
 const SLIDE_MIN_M_PER_S: f64 = 2e-3;
@@ -296,23 +296,6 @@ impl Measured {
         let by_verdict = self.verdict().sureness().cmp(&other.verdict().sureness());
         by_verdict.then(size(self).total_cmp(&size(other)))
     }
-}
-
-/// Which layers start off, and how to play one; `None` if all start on.
-pub fn starts_off(program: &Program) -> Option<String> {
-    let off = program.titles.iter().zip(&program.start).filter(|(_, setting)| !setting.on);
-    let titles: Vec<&LayerTitle> = off.map(|(title, _)| title).collect();
-    let number = titles.first()?.number();
-    let mut named = fold_copies(&titles);
-    let (starts, it) =
-        if titles.len() == 1 { ("starts", "it".to_owned()) } else { ("start", format!("layer {number}")) };
-    let more = named.len().saturating_sub(NAMED_MAX);
-    named.truncate(NAMED_MAX);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    Some(format!(
-        "{}{more} {starts} off: the line `trigger {number}` plays {it} (frixel play --control)",
-        named.join(", ")
-    ))
 }
 
 fn notes(program: &Program) -> Vec<String> {

@@ -27,7 +27,7 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    /// Creates a moment from its samples; `None` if there are none, or if the finger is off the screen.
+    /// Creates a moment from its samples. Returns `None` without samples, or while the finger is off the screen.
     fn of(samples: &[FidelitySample], scene: &Reference, program: &Program) -> Option<Self> {
         let context = context(samples)?;
         let mean =
@@ -61,7 +61,7 @@ pub(super) fn ways_m<'m>(moments: impl Iterator<Item = &'m Moment>) -> impl Iter
     })
 }
 
-/// The finger at the last of some samples, with its motion since the first one; `None` if there are none, or if the
+/// The finger at the last sample, with its motion since the first one. Returns `None` without samples, or while the
 /// finger is off the screen.
 pub(super) fn context(samples: &[FidelitySample]) -> Option<Context> {
     let (first, last) = (samples.first()?, samples.last()?);

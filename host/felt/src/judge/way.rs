@@ -121,7 +121,7 @@ impl Way {
         Self { from_m: self.at(from), to_m: self.at(to) }
     }
 
-    /// The longest part on which the layer is visible; `None` if there is none.
+    /// The longest part on which the layer is visible, if it is visible anywhere.
     fn longest_visible(self, layer: usize, reference: &Reference) -> Option<Self> {
         let part = |number: usize| number as f64 / PLACES as f64;
         let (mut longest, mut run) = (0..0, 0..0);

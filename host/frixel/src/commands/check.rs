@@ -108,8 +108,7 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
     let judgement = judge(&draft, &judged_rig(rig.board, *touch), Advice::Omitted, TO_THE_END);
-    let lines = feel::lines(&judgement.map_err(of_simulation)?);
-    let felt = lines.iter().fold(String::new(), |text, (name, line)| text + &format!("  {name:<16} {line}\n"));
+    let felt = feel::text(&feel::lines(&judgement.map_err(of_simulation)?));
     print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)
 }
 

@@ -34,8 +34,7 @@ const WRITES_IN_PYTHON: [&str; 9] = [
     "tempfile",
 ];
 
-/// The log of an experiment's trials, to which lines are appended, and which is cut after the last whole one, is none
-/// of these.
+/// The log of an experiment's trials is exempt: lines are appended to it, and a line that was cut off is removed.
 #[test]
 fn only_one_crate_writes_files() {
     let host = repository().join("host");

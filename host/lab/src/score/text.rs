@@ -18,7 +18,7 @@ const NAME_WIDTH: usize = 30;
 
 impl Score {
     /// The score in words: the [verdict](Self::verdict), then a line for each layer with its copies and for each two
-    /// levels. Of many layers and levels, only those that are noticed the least surely have a line. With
+    /// levels. If there are many, only the least noticeable ones have a line. With
     /// `with_fidelity`, every number of [`Self::metrics`] follows, with the goals of a display.
     pub fn summary(&self, with_fidelity: bool) -> String {
         let mut text = format!("  {}\n", self.verdict);

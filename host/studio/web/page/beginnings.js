@@ -37,7 +37,15 @@ export const BEGINNINGS = [
   {
     name: "picture",
     words: "The grain of a photo of wood, rough where it is bright; or a picture of yours.",
-    layer: { name: "wood", kind: "bitmap", picture: "textures/wood.jpg", levels: "stretch", x_mm: 15, y_mm: 10, width_mm: 90 },
+    layer: {
+      name: "wood",
+      kind: "bitmap",
+      picture: "textures/wood.jpg",
+      levels: "stretch",
+      x_mm: 15,
+      y_mm: 10,
+      width_mm: 90,
+    },
   },
   {
     name: "noise",
@@ -105,7 +113,8 @@ export function pictureLayer(picture, aspect, screen, taken) {
   const part = taken?.length ? PART : { width: PICTURE_PART, height: PICTURE_PART };
   const widest = Math.min(widthMm * part.width, heightMm * part.height * aspect);
   const { x, y, width } = roomFor(widest, widest / aspect, screen, taken ?? []);
-  return { name: picture.replace(/\.\w+$/, ""), kind: "bitmap", picture, levels: "stretch", x_mm: x, y_mm: y, width_mm: width };
+  const name = picture.replace(/\.\w+$/, "");
+  return { name, kind: "bitmap", picture, levels: "stretch", x_mm: x, y_mm: y, width_mm: width };
 }
 
 /**
