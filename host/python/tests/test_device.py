@@ -29,9 +29,9 @@ SCENE = {
 STREAM = {"layer": [{"kind": "stream", "low_fraction": 0.1, "high_fraction": 0.9}]}
 
 
-def commanded_n(device: Device) -> float:
+def commanded_electric_n(device: Device) -> float:
     """The largest electric friction that is asked for within a tenth of a second."""
-    return max(message.commanded_n for message in device.telemetry(0.1))
+    return max(message.commanded_electric_friction_n for message in device.telemetry(0.1))
 
 
 def states(device: Device, seconds: float = 0.1) -> set[str]:
@@ -61,16 +61,16 @@ def test_layers_change_while_they_play() -> None:
     with Device.open("sim") as device:
         device.play(SCENE)
         device.wait(1.0)
-        base = commanded_n(device)
+        base = commanded_electric_n(device)
         assert device.set_layer("base", gain=0.5) == []
-        assert commanded_n(device) == pytest.approx(0.5 * base, rel=0.02)
+        assert commanded_electric_n(device) == pytest.approx(0.5 * base, rel=0.02)
         device.set_layer(1, on=False)
-        assert commanded_n(device) == 0
+        assert commanded_electric_n(device) == 0
         device.trigger("click", 0.05)
-        assert commanded_n(device) == pytest.approx(base, rel=0.02)
-        assert commanded_n(device) == 0, "the trigger has ended"
+        assert commanded_electric_n(device) == pytest.approx(base, rel=0.02)
+        assert commanded_electric_n(device) == 0, "the trigger has ended"
         assert device.replace({"layer": [{"kind": "constant", "friction_fraction": 0.6}]}) == []
-        assert commanded_n(device) == pytest.approx(2 * base, rel=0.02)
+        assert commanded_electric_n(device) == pytest.approx(2 * base, rel=0.02)
         device.replace({"layer": [{"kind": "constant", "name": "alone", "friction_fraction": 0.6, "live": True}]})
         with pytest.raises(ParameterError, match="gain 50 is refused"):
             device.set_layer("alone", gain=50)
@@ -81,12 +81,12 @@ def test_a_stream_is_played() -> None:
         device.play(STREAM)
         device.wait(1.0)
         device.stream(np.full(8000, 1.0), 8000)
-        high = commanded_n(device)
+        high = commanded_electric_n(device)
         device.wait()
         device.wait(0.1)
-        assert commanded_n(device) == 0, "it is over"
+        assert commanded_electric_n(device) == 0, "it is over"
         device.stream(np.zeros(8000), 8000)
-        assert 0 < commanded_n(device) < 0.5 * high
+        assert 0 < commanded_electric_n(device) < 0.5 * high
 
 
 def broken(how: str) -> Device:
@@ -159,7 +159,7 @@ def test_what_is_not_taken_changes_nothing() -> None:
             device.set_layer("base", on=False)
         device.play(SCENE)
         device.wait(1.0)
-        before = commanded_n(device)
+        before = commanded_electric_n(device)
         with pytest.raises(ParameterError, match='did you mean "base"'):
             device.set_layer("bass", on=False)
         with pytest.raises(ParameterError, match="by `on`, by `gain` or by both"):
@@ -184,7 +184,7 @@ def test_what_is_not_taken_changes_nothing() -> None:
             device.telemetry(messages_per_s=0)
         with pytest.raises(ParameterError, match="seconds is a number"):
             device.wait(-1)
-        assert commanded_n(device) == before
+        assert commanded_electric_n(device) == before
 
 
 def test_a_port_that_does_not_exist() -> None:

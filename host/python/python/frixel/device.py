@@ -51,7 +51,7 @@ class Telemetry:
     """Estimated place of the finger, from the top edge of the screen."""
     speed_mm_s: float
     """Estimated sliding speed."""
-    commanded_n: float
+    commanded_electric_friction_n: float
     """Electric friction that the scene asks for, N: what the drive adds to the friction without voltage."""
     voltage_v_rms: float
     """Rms voltage of the envelope, V."""
@@ -298,10 +298,10 @@ class Device:
                 with self._disarming():
                     answer = self._device.listen(self._step_s(until_s))
                 self._take(answer)
-                for tick, state, flags, x_m, y_m, speed_m_s, commanded_n, voltage_v_rms in answer[4]:
+                for tick, state, flags, x_m, y_m, speed_m_s, commanded_electric_n, voltage_v_rms in answer[4]:
                     t_s = tick / self._device.ticks_per_s
                     place = 1e3 * x_m, 1e3 * y_m, 1e3 * speed_m_s
-                    yield Telemetry(t_s, state, tuple(flags), *place, commanded_n, voltage_v_rms)
+                    yield Telemetry(t_s, state, tuple(flags), *place, commanded_electric_n, voltage_v_rms)
         finally:
             if not self._device.is_closed:
                 self._take(self._device.subscribe(0))
@@ -361,8 +361,11 @@ class Device:
             raise
         self.stop()
         columns: dict[str, NDArray[Any]] = {name: np.full(len(messages), np.nan) for name in COLUMNS}
-        for name in ("t_s", "x_mm", "y_mm", "speed_mm_s", "commanded_n", "voltage_v_rms"):
+        for name in ("t_s", "x_mm", "y_mm", "speed_mm_s", "voltage_v_rms"):
             columns[name] = np.array([getattr(message, name) for message in messages], dtype=float)
+        natural_n, _ = scene.reach_n
+        electric_n = [message.commanded_electric_friction_n for message in messages]
+        columns["commanded_n"] = natural_n + np.array(electric_n, dtype=float)
         columns["t_s"] = columns["t_s"] - (messages[0].t_s if messages else 0.0)
         columns["flags"] = np.array(["+".join(message.flags) for message in messages], dtype=np.str_)
         settings = {
