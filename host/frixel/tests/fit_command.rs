@@ -8,7 +8,7 @@ use std::path::Path;
 
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{self, Settings, Summary};
-use frixel_scene::{Evidence, FingerProfile, Screen};
+use frixel_scene::{Evidence, FingerProfile, Profile, Screen};
 use serde_json::Value;
 use tempfile::TempDir;
 

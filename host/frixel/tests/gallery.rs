@@ -16,7 +16,7 @@ use frixel_lab::simulate::default_stroke;
 use frixel_layers::{Header, Scene as WireScene};
 use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::reference::{Context, Reference, direction_of};
-use frixel_scene::{FingerProfile, Program, Scene, TargetRange, compile};
+use frixel_scene::{FingerProfile, Profile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
 use frixel_wire::fault::Flags;
 

@@ -10,7 +10,7 @@ use frixel_felt::judge::{Advice, Verdict, weber_steps};
 use frixel_hil_sim::{Board, TouchConfig};
 use frixel_model::TouchBound;
 use frixel_play::{TO_THE_END, judge, judged_rig};
-use frixel_scene::{FingerProfile, Program, Scene, compile_draft};
+use frixel_scene::{FingerProfile, Profile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 

@@ -19,6 +19,7 @@
 mod bootstrap;
 pub mod calibration;
 pub mod fit;
+mod generated_stroke;
 pub mod hash;
 pub mod input;
 pub mod model_csv;
@@ -32,4 +33,5 @@ pub mod stroke_file;
 pub mod sweep;
 pub mod table;
 
+pub use generated_stroke::GeneratedStroke;
 pub use rehearsal::{RehearsalError, board_costs};

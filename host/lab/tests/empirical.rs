@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, Summary, VoltageLaw, data, fit, fit_empirical};
-use frixel_scene::{Experiment, FingerProfile};
+use frixel_scene::{Experiment, FingerProfile, Profile};
 
 use super::person::{Law, Person, Protocol};
 use super::settings;

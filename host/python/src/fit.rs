@@ -2,7 +2,7 @@
 
 use frixel_lab::fit::{self, FitError, Settings, Summary};
 use frixel_lab::table::Reading;
-use frixel_scene::Experiment;
+use frixel_scene::{Experiment, Screen};
 use pyo3::prelude::*;
 
 use super::error::raised;
@@ -25,7 +25,7 @@ pub(crate) struct FitSettings {
 /// in words, and the text of the finger's profile.
 #[pyfunction]
 pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> PyResult<(String, String, String)> {
-    let screen = settings.screen.screen(py)?;
+    let screen: Screen = settings.screen.read(py)?;
     let FitSettings { empirical, voltage_v_rms, normal_load_n, without, seed, date, method, screen: named } = settings;
     let coating_gap_m = 1e-6 * screen.coating_gap_um();
     let settings = Settings { voltage_v_rms, normal_load_n, coating_gap_m, without, seed };

@@ -71,8 +71,8 @@ impl Scene {
         finger: Option<ProfileText>,
         screen: Option<ProfileText>,
     ) -> PyResult<Self> {
-        let screen = screen.map(|screen| Ok::<_, PyErr>((screen.screen(py)?, screen))).transpose()?;
-        let finger = finger.map(|finger| Ok::<_, PyErr>((finger.finger(py)?, finger))).transpose()?;
+        let screen = screen.map(|screen| Ok::<_, PyErr>((screen.read(py)?, screen))).transpose()?;
+        let finger = finger.map(|finger| Ok::<_, PyErr>((finger.read(py)?, finger))).transpose()?;
         let read = py.detach(|| {
             let files = ReadFiles::new(folder, files);
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
@@ -131,7 +131,7 @@ impl Scene {
 
     /// What `frixel check --json` prints.
     fn check(&self, py: Python<'_>, touch: Option<ProfileText>, with_board: bool) -> PyResult<String> {
-        let touch = touch.map_or(Ok(TouchConfig::REALISTIC), |touch| touch.touch_source(py))?;
+        let touch = touch.map_or(Ok(TouchConfig::REALISTIC), |touch| touch.read(py))?;
         let rig = RigConfig::default();
         let program = py.detach(|| compile(&self.parsed, &rig.board.limits, rig.board.tick_hz));
         let program = program.map_err(|error| scene_error(py, &error))?;

@@ -1,7 +1,8 @@
 //! Scores: how faithfully simulated fingers feel a scene.
 
 use frixel_hil_sim::{Board, WorldOptions};
-use frixel_lab::score::{Score, TrialPlan, TrialsError, Way};
+use frixel_lab::GeneratedStroke;
+use frixel_lab::score::{Score, TrialPlan, TrialStroke, TrialsError};
 use frixel_scene::compile;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -15,7 +16,7 @@ use super::simulator::Stroke;
 /// Where the fingers go.
 #[derive(FromPyObject)]
 pub(crate) enum ScoreStroke<'py> {
-    /// `human`, `human-rough` or `sweep`.
+    /// The name of a generated stroke.
     Generated(String),
     /// The same stroke for every finger.
     Own(Stroke<'py>),
@@ -37,22 +38,16 @@ pub(crate) struct ScoreSettings<'py> {
 
 impl ScoreSettings<'_> {
     fn world(&self, py: Python<'_>) -> PyResult<WorldOptions> {
-        let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
+        let touch = self.touch.as_ref().map(|touch| touch.read(py)).transpose()?;
         Ok(WorldOptions { ideal: self.ideal, touch, ..WorldOptions::default() })
     }
 
-    fn way(&self, py: Python<'_>, program: &frixel_scene::Program) -> PyResult<Way> {
-        let own = match &self.stroke {
-            ScoreStroke::Generated(name) => match name.as_str() {
-                "human" => return Ok(Way::Human),
-                "human-rough" => return Ok(Way::HumanRough),
-                "sweep" => return Ok(Way::Sweep),
-                _ => None,
-            },
-            ScoreStroke::Own(stroke) => stroke.on_screen(py, program)?,
+    fn stroke(&self, py: Python<'_>, program: &frixel_scene::Program) -> PyResult<TrialStroke> {
+        let stroke = match &self.stroke {
+            ScoreStroke::Generated(name) => GeneratedStroke::named(name).map(TrialStroke::Generated),
+            ScoreStroke::Own(stroke) => stroke.on_screen(py, program)?.map(TrialStroke::Own),
         };
-        let unknown = || parameter_error(py, "a stroke is \"human\", \"human-rough\", \"sweep\" or a Stroke");
-        own.map(Way::Stroke).ok_or_else(unknown)
+        stroke.ok_or_else(|| parameter_error(py, "a stroke is \"human\", \"human-rough\", \"sweep\" or a Stroke"))
     }
 }
 
@@ -68,7 +63,7 @@ pub(crate) fn score_scene(
     let program = py.detach(|| compile(scene.parsed(), &board.limits, board.tick_hz));
     let program = program.map_err(|error| scene_error(py, &error))?;
     let plan = TrialPlan {
-        way: settings.way(py, &program)?,
+        stroke: settings.stroke(py, &program)?,
         strokes: settings.strokes,
         seeds: settings.seeds,
         seconds: settings.seconds,

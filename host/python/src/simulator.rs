@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
+use frixel_lab::GeneratedStroke;
 use frixel_lab::recording::{Metadata, SourceFile, play_fields, play_values};
-use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions};
+use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions, screen_m};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
 use frixel_play::{Simulated, Simulation};
 use frixel_scene::Program;
@@ -19,10 +20,6 @@ use super::scene::Scene;
 use super::signals::interruptible;
 
 const M_PER_MM: f64 = 1e-3;
-/// Time between two places of a stroke that are looked at, s.
-const CHECK_PERIOD_S: f64 = 1e-3;
-/// Longest play, s: a day.
-const SECONDS_MAX: f64 = 86_400.0;
 
 /// A stroke, an object of `python/frixel/stroke.py`.
 #[derive(FromPyObject)]
@@ -55,9 +52,9 @@ impl Stroke<'_> {
                 }
             }
             Self::Human { seed, seconds, rough } => {
-                let name = if *rough { StrokeOptions::HUMAN_ROUGH } else { StrokeOptions::HUMAN };
+                let made = if *rough { GeneratedStroke::HumanRough } else { GeneratedStroke::Human };
                 let (human_seed, human_seconds) = (Some(*seed), *seconds);
-                StrokeOptions { name: Some(name.into()), human_seed, human_seconds, ..StrokeOptions::default() }
+                StrokeOptions { name: Some(made.name().into()), human_seed, human_seconds, ..StrokeOptions::default() }
             }
             Self::Rows { .. } => StrokeOptions { name: Some(PlayOptions::FILE.into()), ..StrokeOptions::default() },
         }
@@ -88,10 +85,6 @@ impl Stroke<'_> {
     }
 }
 
-fn screen_m(program: &Program) -> [f64; 2] {
-    [program.header.screen_width_m.into(), program.header.screen_height_m.into()]
-}
-
 /// Settings of a play, an object of `python/frixel/simulator.py`.
 #[derive(FromPyObject)]
 pub(crate) struct Settings<'py> {
@@ -117,29 +110,16 @@ impl Settings<'_> {
     /// The play that `frixel play --port sim` makes with the same settings.
     fn play<'s>(&self, py: Python<'_>, scene: &'s Scene, seconds: Option<f64>) -> PyResult<Play<'s>> {
         let program = scene.program();
-        let tick_hz = RigConfig::default().board.tick_hz;
-        let check = |seconds: f64| {
-            let is_playable = seconds * f64::from(tick_hz) >= 1.0 && seconds <= SECONDS_MAX;
-            let message = || format!("a play lasts from a tick to {SECONDS_MAX} s, found {seconds} s");
-            if is_playable { Ok(()) } else { Err(parameter_error(py, message())) }
-        };
-        seconds.map_or(Ok(()), check)?;
         let stroke = self.stroke.as_ref().map(Stroke::of_rows).transpose();
         let stroke = stroke.map_err(|error| parameter_error(py, error))?.flatten();
-        let touch = self.touch.as_ref().map(|touch| touch.touch_source(py)).transpose()?;
+        let touch = self.touch.as_ref().map(|touch| touch.read(py)).transpose()?;
         let options = self.options(scene, seconds);
         let simulation = options.simulation(scene.parsed(), program, (stroke, touch), &RigConfig::default());
         let simulation = simulation.map_err(|error| match error {
             PlayOptionsError::Screen(error) => scene_error(py, &error),
+            error @ PlayOptionsError::RowRate { .. } => parameter_error(py, format!("rows_per_s: {error}")),
             error => parameter_error(py, error),
         })?;
-        check(simulation.seconds)?;
-        if !is_on_screen(&simulation.stroke, screen_m(program), simulation.seconds) {
-            let (width_mm, height_mm) = (scene.parsed().screen().width_mm, scene.parsed().screen().height_mm);
-            let message =
-                format!("the stroke is never on the screen of {width_mm} mm by {height_mm} mm: move it there");
-            return Err(parameter_error(py, message));
-        }
         Ok(Play { program, options, files: self.files(scene), simulation })
     }
 
@@ -176,15 +156,6 @@ impl Settings<'_> {
         ];
         texts.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))).collect()
     }
-}
-
-fn is_on_screen(stroke: &SimulatedStroke, [width_m, height_m]: [f64; 2], seconds: f64) -> bool {
-    let end_s = seconds.min(stroke.duration_s());
-    let mut times = (0..).map(|step| CHECK_PERIOD_S * f64::from(step)).take_while(|t_s| *t_s <= end_s);
-    times.any(|t_s| {
-        let finger = stroke.at(t_s);
-        finger.is_some_and(|finger| (0.0..=width_m).contains(&finger.x_m) && (0.0..=height_m).contains(&finger.y_m))
-    })
 }
 
 /// Plays a scene on the simulated board. Returns the columns of the record, and the metadata of a recording as JSON.

@@ -16,7 +16,7 @@ use super::layer::Layer;
 use super::log::Log;
 use super::mistake::{FieldMistake, FileMistake};
 use super::pool::PictureBytes;
-use super::profiles::{self, ProfileSource, Profiles};
+use super::scene_profiles::{self, ProfileSource, Profiles};
 use super::screen::Screen;
 use super::source::{Places, Source};
 use super::stack::LayerTables;
@@ -216,7 +216,7 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
     for file in included {
         join(fields, file, log);
     }
-    let profiles = profiles::read(fields, named, log);
+    let profiles = scene_profiles::read(fields, named, log);
     let drive = drive(fields.table(log, &tables::scene::DRIVE).unwrap_or_else(|| absent("[drive]")), log);
     let carrier = carrier(fields.table(log, &tables::scene::CARRIER).unwrap_or_else(|| absent("[carrier]")), log);
     let touch = touch(fields.table(log, &tables::scene::TOUCH).unwrap_or_else(|| absent("[touch]")), log);

@@ -2,7 +2,7 @@
 
 use super::finger::{Evidence, Origin};
 use super::printable::printable;
-use super::profiles::{ProfileSource, Profiles};
+use super::scene_profiles::{ProfileSource, Profiles};
 
 /// The finger for which a program is compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::compile_error::CompileError;
 use super::fields::{Fields, read_text};
 use super::log::Log;
+use super::profile::Profile;
 use super::tables::touch_source as fields_of;
 
 /// A touch source in the units and field names of its file.
@@ -69,16 +70,29 @@ impl Display for TouchSource {
     }
 }
 
-/// Reads the text of a touch source's file. Messages call the file `name`.
-///
 /// ```
+/// use frixel_hil_sim::TouchConfig;
+/// use frixel_scene::Profile;
+///
 /// let text = "reports_per_s = 120\nlatency_ms = 8\nlost_share = 0.05\n";
-/// let source = frixel_scene::parse_touch_source(text, "panel.toml")?;
+/// let source = TouchConfig::parse(text, "panel.toml")?;
 /// assert_eq!((source.rate_hz, source.latency_s, source.lost_share), (120.0, 8e-3, 0.05));
 /// # Ok::<(), frixel_scene::CompileError>(())
 /// ```
-pub fn parse_touch_source(text: &str, name: &str) -> Result<TouchConfig, CompileError> {
-    read_text(text, name, "this touch source", read)
+impl Profile for TouchConfig {
+    const KIND: &'static str = "touch source";
+
+    fn bundled_names() -> Vec<&'static str> {
+        Self::bundled_names().collect()
+    }
+
+    fn bundled(name: &str) -> Option<Self> {
+        Self::bundled(name)
+    }
+
+    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
+        read_text(text, name, "this touch source", read)
+    }
 }
 
 fn read(mut fields: Fields, log: &mut Log) -> Option<TouchConfig> {
@@ -114,7 +128,7 @@ mod tests {
     fn every_field_is_read_in_its_unit() {
         let text = "reports_per_s = 200\nlatency_ms = 5\njitter_ms = 0.25\nnoise_mm = 0.02\nstep_mm = 0.18\n\
                     lost_share = 0.12\nbunched_share = 0.03\npauses_per_s = 0.1\npause_max_ms = 120\n";
-        let read = parse_touch_source(text, "touch.toml").expect("it reads");
+        let read = TouchConfig::parse(text, "touch.toml").expect("it reads");
         let bundled = TouchConfig::bundled("200").expect("it is bundled");
         let numbers = |source: TouchConfig| {
             let TouchConfig { rate_hz, latency_s, noise_rms_m, jitter_rms_s, .. } = source;
@@ -130,7 +144,7 @@ mod tests {
     #[test]
     fn a_wrong_file_is_refused_with_all_of_its_mistakes() {
         let text = "reports_per_s = 0\nlost_share = 1.5\nlatencyms = 5\n";
-        let error = parse_touch_source(text, "touch.toml").expect_err("it has mistakes").to_string();
+        let error = TouchConfig::parse(text, "touch.toml").expect_err("it has mistakes").to_string();
         for part in ["touch.toml:1:", "reports_per_s", "lost_share", "latency_ms"] {
             assert!(error.contains(part), "{part}: {error}");
         }

@@ -2,7 +2,7 @@
 
 use frixel_control::Board;
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, compile, compile_draft, parse_touch_source};
+use frixel_scene::{CompileError, FingerProfile, Profile, Program, Scene, Screen, compile, compile_draft};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -35,27 +35,27 @@ pub(crate) fn drafted(request: &Request) -> Result<(Scene, Program), ProgramErro
 
 /// The simulated touch source of a request.
 pub(crate) fn touch_source(request: &Request) -> Result<TouchConfig, ProgramError> {
-    let Some(touch) = &request.touch else { return Ok(TouchConfig::REALISTIC) };
-    match TouchConfig::bundled(touch) {
-        Some(source) => Ok(source),
-        None => Ok(parse_touch_source(touch, "touch source")?),
-    }
+    Ok(request.touch.as_deref().map_or(Ok(TouchConfig::REALISTIC), given)?)
 }
 
 /// The scene of a request, with its finger and its screen.
 fn scene(request: &Request) -> Result<Scene, ProgramError> {
     let mut scene = Scene::parse_bytes(request.scene()?, &request.entry, &request.files)?;
     if let Some(screen) = &request.screen {
-        scene = match Screen::bundled(screen) {
-            Some(profile) => scene.with_screen(profile, screen),
-            None => scene.with_screen(Screen::parse(screen, "screen")?, "screen"),
-        };
+        scene = scene.with_screen(given(screen)?, name_of::<Screen>(screen));
     }
     if let Some(finger) = &request.finger {
-        scene = match FingerProfile::bundled(finger) {
-            Some(profile) => scene.with_finger(profile, finger),
-            None => scene.with_finger(FingerProfile::parse(finger, "finger")?, "finger"),
-        };
+        scene = scene.with_finger(given(finger)?, name_of::<FingerProfile>(finger));
     }
     Ok(scene)
+}
+
+/// A profile of a request: the name of a bundled one, or the text of a file.
+fn given<P: Profile>(given: &str) -> Result<P, CompileError> {
+    P::bundled(given).map_or_else(|| P::parse(given, P::KIND), Ok)
+}
+
+/// What messages call it.
+fn name_of<P: Profile>(given: &str) -> &str {
+    if P::bundled(given).is_some() { given } else { P::KIND }
 }

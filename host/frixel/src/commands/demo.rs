@@ -47,7 +47,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<()> {
          two of the smallest steps that a finger feels"
     ))?;
     print_line(format_args!("open {out}/scene.png for the path of the finger, {out}/felt.svg for what it felt"))?;
-    play::run(&PlayArgs::ideal(&scene, &args.out))?;
+    play::run(&PlayArgs::ideal(&scene, &args.out)?)?;
     print_line(format_args!("change {place} and play it again: frixel play {place}"))
 }
 

@@ -20,11 +20,11 @@ mod target;
 mod watch;
 mod with_log;
 
-use frixel_lab::simulate::PlayOptions;
+use frixel_lab::simulate::{PlayOptions, PlayOptionsError};
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Result, anyhow};
+use clap::{Args, Command, FromArgMatches};
 
 use crate::output::{Effects, Report};
 
@@ -112,32 +112,11 @@ pub(super) struct PlayArgs {
 }
 
 impl PlayArgs {
-    /// The options of a play on the simulator in an ideal world, into a folder, without any other option.
-    pub(super) fn ideal(scene: &Path, out: &Path) -> Self {
-        Self {
-            scene: scene.to_owned(),
-            profiles: ProfileArgs::default(),
-            port: "sim".into(),
-            stroke: StrokeArgs::default(),
-            seconds: None,
-            out: out.to_owned(),
-            overwrite: false,
-            verbose: false,
-            json: false,
-            seed: 1,
-            touch: TouchArgs::default(),
-            ideal: true,
-            no_leakage: false,
-            finger_seed: None,
-            record: None,
-            participant: None,
-            csv_hz: 1000,
-            arm: false,
-            watch: false,
-            with_log: None,
-            control: false,
-            stream: StreamArgs::default(),
-        }
+    /// The options of a play on the simulator in an ideal world, into a folder.
+    pub(super) fn ideal(scene: &Path, out: &Path) -> Result<Self> {
+        let typed = [scene.as_os_str(), "--ideal".as_ref(), "--out".as_ref(), out.as_os_str()];
+        let command = Self::augment_args(Command::new("play").no_binary_name(true));
+        Ok(Self::from_arg_matches(&command.try_get_matches_from(typed)?)?)
     }
 
     /// The options as a recording has them, but for the names of finger and screen.
@@ -159,6 +138,19 @@ impl PlayArgs {
             lines: None,
             stream_s,
             interrupted: false,
+        }
+    }
+
+    /// An error of the options in the words of the command.
+    fn error(&self, error: PlayOptionsError) -> anyhow::Error {
+        match error {
+            PlayOptionsError::Stroke(error) => self.stroke.error(error),
+            PlayOptionsError::RowRate { .. } => anyhow!("--csv-hz: {error}"),
+            PlayOptionsError::OffScreen { .. } => match self.stroke.file() {
+                Some(file) => anyhow!("{}: {error}", file.display()),
+                None => error.into(),
+            },
+            error => error.into(),
         }
     }
 

@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use super::error::reading;
-use crate::input;
-use crate::scene_file::{self, ProfileNames, SceneFileError};
+use crate::scene_file::{ProfileNames, SceneFileError, file_of, profile};
 use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::{TouchConfig, WorldOptions};
 use frixel_scene::Screen;
 
-#[derive(Clone, Debug, Default, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct ProfileArgs {
     /// Finger in place of the scene's: `example`, `dry`, `moist`, `light` or a profile's file.
     #[arg(long, value_name = "FILE")]
@@ -26,7 +24,7 @@ impl ProfileArgs {
     }
 }
 
-#[derive(Clone, Debug, Default, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct TouchArgs {
     /// Simulated touch source: `100`, `200`, `500` reports a second or a file. Default: 100.
     #[arg(long, value_name = "NAME|FILE")]
@@ -45,12 +43,12 @@ impl TouchArgs {
 
     /// The file of the source, if it is in one.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_none()).map(Path::new)
+        file_of::<TouchConfig>(self.touch.as_ref())
     }
 
     /// The source, if it is given.
     pub(super) fn source(&self) -> Result<Option<TouchConfig>, SceneFileError> {
-        self.touch.as_deref().map(scene_file::touch_source).transpose()
+        self.touch.as_deref().map(profile).transpose()
     }
 
     /// A world with this source.
@@ -62,14 +60,9 @@ impl TouchArgs {
 /// The screen of an experiment, by a bundled name or a file, and the name by which profiles refer to it.
 pub(super) fn screen(named: Option<&str>) -> Result<(String, Screen)> {
     let Some(named) = named else { return Ok(("example".to_owned(), Screen::example())) };
-    if let Some(screen) = Screen::bundled(named) {
-        return Ok((named.to_owned(), screen));
-    }
-    let path = Path::new(named);
-    let text = input::read_text(path, input::TOML_MAX_BYTES).map_err(reading(path))?;
-    let screen = Screen::parse(&text, named)?;
+    let screen: Screen = profile(named)?;
     let name = screen.name.clone().unwrap_or_else(|| {
-        path.file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
+        Path::new(named).file_stem().map_or_else(|| named.to_owned(), |stem| stem.to_string_lossy().into_owned())
     });
     Ok((name, screen))
 }

@@ -11,16 +11,17 @@ use frixel_hil_sim::World;
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
 use frixel_hil_sim::{Board, RigConfig, WorldConfig};
 use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
+use frixel_lab::simulate::screen_m;
 use frixel_scene::{Scenario, Scene};
 
-use super::error::of_finger;
+use super::error::{at, of_finger};
 use crate::input;
 #[cfg(unix)]
 use crate::rigs::EmulatedRig;
 use crate::scene_file::load;
 use frixel_lab::input::check_path;
 
-use super::stroke::check_on_screen;
+use super::stroke::note_off_screen;
 use super::terminal::{note, print_line};
 
 /// The rig that a scenario runs on.
@@ -95,8 +96,8 @@ fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board
     let programs = scenario::programs(scenario, scenes, board)?;
     if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {
         let (stroke, _) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
-        let [width_m, height_m] = [program.header.screen_width_m, program.header.screen_height_m].map(f64::from);
-        check_on_screen(&format!("{}: the stroke", scenario.file), &stroke, width_m, height_m, scenario.seconds)?;
+        let name = format!("{}: the stroke", scenario.file);
+        note_off_screen(&name, &stroke, screen_m(program), scenario.seconds).map_err(at(&scenario.file))?;
     }
     Ok(programs)
 }

@@ -8,7 +8,8 @@ use anyhow::Result;
 use clap::Args;
 use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all};
 use frixel_hil_sim::Board;
-use frixel_lab::score::{Score, TrialPlan, Way};
+use frixel_lab::GeneratedStroke;
+use frixel_lab::score::{Score, TrialPlan, TrialStroke};
 use frixel_play::TO_THE_END;
 use frixel_scene::compile;
 
@@ -92,14 +93,12 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
 
 /// What each finger does.
 fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
-    let way = match args.stroke.as_str() {
-        "human" => Way::Human,
-        "human-rough" => Way::HumanRough,
-        "sweep" => Way::Sweep,
-        file => Way::Stroke(stroke::from_file(Path::new(file))?),
+    let stroke = match GeneratedStroke::named(&args.stroke) {
+        Some(generated) => generated.into(),
+        None => TrialStroke::Own(stroke::from_file(Path::new(&args.stroke))?),
     };
     Ok(TrialPlan {
-        way,
+        stroke,
         strokes: args.strokes,
         seeds: args.seeds,
         seconds: args.seconds,

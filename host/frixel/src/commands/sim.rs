@@ -8,8 +8,8 @@ use crate::rigs::{Dropped, Server};
 use crate::scene_file::ProfileNames;
 use anyhow::Result;
 use frixel_files::Inputs;
-use frixel_hil_sim::{Board, BoardMemory, FingertipConfig, OwnFinger, Person, Rig, RigConfig, Stroke, WorldOptions};
-use frixel_lab::simulate::REPEAT_PAUSE_S;
+use frixel_hil_sim::{Board, BoardMemory, FingertipConfig, OwnFinger, Person, Rig, RigConfig, WorldOptions};
+use frixel_lab::simulate::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, endless_sweep};
 use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
@@ -17,11 +17,6 @@ use super::interrupt::Interrupt;
 use super::profiles::screen;
 use super::terminal::{note, print_line};
 
-/// Size of the screen that the generated stroke covers: that of the bundled scenes.
-const SCREEN_WIDTH_M: f64 = 0.12;
-const SCREEN_HEIGHT_M: f64 = 0.11;
-/// Duration of the generated stroke, s.
-const STROKE_S: f64 = 3.0;
 /// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
 /// A scene without friction of its own, from which the contact of a profile is computed.
@@ -29,11 +24,11 @@ const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fr
 
 pub(super) fn run(args: &SimArgs) -> Result<()> {
     let interrupt = Interrupt::watch()?;
-    let stroke = match args.stroke.stroke([SCREEN_WIDTH_M, SCREEN_HEIGHT_M], None, args.seed)? {
-        Some(stroke) => stroke,
-        None => Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).map_err(of_generated_stroke)?,
+    let stroke = match args.stroke.stroke(BUNDLED_SCREEN_M, None, args.seed)? {
+        Some(stroke) => stroke.looped(REPEAT_PAUSE_S),
+        None => endless_sweep(BUNDLED_SCREEN_M),
     };
-    let stroke = stroke.looped(REPEAT_PAUSE_S).map_err(of_generated_stroke)?;
+    let stroke = stroke.map_err(of_generated_stroke)?;
     let finger = own_finger(args)?;
     let config = RigConfig::default().with(&WorldOptions { finger, ..args.touch.world(args.ideal)? });
     let mut memory = BoardMemory::new();

@@ -4,25 +4,23 @@ use std::path::{Path, PathBuf};
 
 use super::error::{at, of_generated_stroke, reading};
 use crate::input;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow};
 use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
-use frixel_lab::simulate::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
+use frixel_lab::GeneratedStroke;
+use frixel_lab::simulate::{
+    PlayOptions, PlayOptionsError, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, part_off_screen, side_mm,
+};
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Shown;
 
 use super::argument::{RARE, above_zero_to, number};
 use super::terminal::{note, note_interrupted, note_understood};
 
-/// Time between two positions of a stroke that are checked, s.
-const CHECK_PERIOD_S: f64 = 1e-3;
-/// Largest number of positions of a stroke that are checked.
-const CHECKS_MAX: f64 = 1e6;
-
 /// Options that say where the simulated finger goes.
-#[derive(Clone, Debug, Default, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct StrokeArgs {
-    /// Path of the finger: `human`, `human-rough` or a CSV file (docs/outputs.md). Default: a sweep.
+    /// Path of the finger: `human`, `human-rough`, `sweep` or a CSV file (docs/outputs.md). Default: a sweep.
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the screen's top left corner.
@@ -66,9 +64,7 @@ impl StrokeArgs {
     /// The options as a recording has them, without the path of a file.
     pub(super) fn options(&self) -> StrokeOptions {
         let place = |point: Point| [point.x_m, point.y_m];
-        let name = |path: &PathBuf| {
-            path.to_str().filter(|name| StrokeOptions::is_generated(name)).unwrap_or(PlayOptions::FILE).to_owned()
-        };
+        let name = |path: &PathBuf| generated(path).map_or(PlayOptions::FILE, GeneratedStroke::name).to_owned();
         StrokeOptions {
             name: self.stroke.as_ref().map(name),
             from_m: self.from.map(place),
@@ -87,7 +83,7 @@ impl StrokeArgs {
 
     /// The file of the stroke.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.stroke.as_deref().filter(|path| !path.to_str().is_some_and(StrokeOptions::is_generated))
+        self.stroke.as_deref().filter(|path| generated(path).is_none())
     }
 
     /// The stroke that the options describe; `None` without options. A person's stroke covers a screen of this width
@@ -106,7 +102,7 @@ impl StrokeArgs {
             StrokeOptionsError::TooLong { seconds } => too_long(&self.name(), seconds),
             StrokeOptionsError::TooOften { .. } => anyhow!("--times: {error}"),
             StrokeOptionsError::Straight(source) => anyhow!("--from and --to: {source}; give two places that differ"),
-            StrokeOptionsError::Human(source) => of_generated_stroke(source),
+            StrokeOptionsError::Generated(source) => of_generated_stroke(source),
         }
     }
 
@@ -114,6 +110,11 @@ impl StrokeArgs {
     pub(super) fn name(&self) -> String {
         self.stroke.as_ref().map_or_else(|| "the stroke".to_owned(), |path| path.display().to_string())
     }
+}
+
+/// The stroke that the text of an option names, if it is not a file.
+fn generated(option: &Path) -> Option<GeneratedStroke> {
+    option.to_str().and_then(GeneratedStroke::named)
 }
 
 fn too_long(name: &str, seconds: f64) -> anyhow::Error {
@@ -156,35 +157,18 @@ fn speed_m_per_s(text: &str) -> Result<f64, String> {
     Ok(1e-3 * speed_mm_per_s)
 }
 
-/// Fails if the stroke is never on the screen in its first `seconds`. Prints a note if it is partly off the screen.
-pub(super) fn check_on_screen(
+/// Prints a note if a stroke is partly off a screen of this width and height, in m, in its first `seconds`. Fails if it
+/// is never on it.
+pub(super) fn note_off_screen(
     name: &str,
     stroke: &Stroke,
-    screen_width_m: f64,
-    screen_height_m: f64,
+    screen_m: [f64; 2],
     seconds: f64,
-) -> Result<()> {
-    let end_s = seconds.min(stroke.duration_s());
-    let checks = (end_s / CHECK_PERIOD_S).ceil().clamp(1.0, CHECKS_MAX);
-    let (mut on, mut off) = (0_u32, 0_u32);
-    for finger in (0..=checks as u32).filter_map(|check| stroke.at(end_s * f64::from(check) / checks)) {
-        if (0.0..=screen_width_m).contains(&finger.x_m) && (0.0..=screen_height_m).contains(&finger.y_m) {
-            on += 1;
-        } else {
-            off += 1;
-        }
-    }
-    // The sides are stored as f32; rounding to a micrometre restores the values of the scene file.
-    let in_mm = |side_m: f64| (1e6 * side_m).round() / 1e3;
-    let (width_mm, height_mm) = (in_mm(screen_width_m), in_mm(screen_height_m));
-    if on == 0 && off > 0 {
-        bail!(
-            "{name} is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top \
-             left corner"
-        );
-    }
-    if off > 0 {
-        let percent = (100.0 * f64::from(off) / f64::from(on + off)).max(0.1);
+) -> Result<(), PlayOptionsError> {
+    let part = part_off_screen(stroke, screen_m, seconds)?;
+    if part > 0.0 {
+        let [width_mm, height_mm] = screen_m.map(side_mm);
+        let percent = (100.0 * part).max(0.1);
         note(format_args!(
             "{name}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
         ));

@@ -10,12 +10,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_hil_sim::TouchConfig;
 use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Scene, Screen, TILDE_ADVICE, is_picture,
-    parse_touch_source,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Scene, Screen, TILDE_ADVICE, is_picture,
 };
 use thiserror::Error;
 
@@ -171,12 +169,12 @@ pub(crate) struct ProfileNames {
 impl ProfileNames {
     /// The file of the finger, if it is in one.
     pub(crate) fn finger_file(&self) -> Option<&Path> {
-        self.finger.as_deref().filter(|name| FingerProfile::bundled(name).is_none()).map(Path::new)
+        file_of::<FingerProfile>(self.finger.as_ref())
     }
 
     /// The file of the screen, if it is in one.
     pub(crate) fn screen_file(&self) -> Option<&Path> {
-        self.screen.as_deref().filter(|name| Screen::bundled(name).is_none()).map(Path::new)
+        file_of::<Screen>(self.screen.as_ref())
     }
 
     /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
@@ -192,47 +190,33 @@ impl ProfileNames {
     /// A scene with this finger and screen.
     pub(crate) fn applied_to(&self, mut scene: Scene) -> Result<Scene, SceneFileError> {
         if let Some(name) = &self.screen {
-            scene = scene.with_screen(screen(name)?, name);
+            scene = scene.with_screen(profile(name)?, name);
         }
         if let Some(name) = &self.finger {
-            let names = FingerProfile::bundled_names();
-            let finger = profile("finger", name, FingerProfile::bundled, names, FingerProfile::parse)?;
-            scene = scene.with_finger(finger, name);
+            scene = scene.with_finger(profile(name)?, name);
         }
         Ok(scene)
     }
 }
 
-/// The bundled screen of a name, or that in the file of that name.
-pub(crate) fn screen(name: &str) -> Result<Screen, SceneFileError> {
-    profile("screen", name, Screen::bundled, Screen::bundled_names(), Screen::parse)
-}
-
-/// The bundled touch source of a name, or that in the file of that name.
-pub(crate) fn touch_source(name: &str) -> Result<TouchConfig, SceneFileError> {
-    profile("touch source", name, TouchConfig::bundled, TouchConfig::bundled_names(), parse_touch_source)
+/// The file of a profile, if it is in one.
+pub(crate) fn file_of<P: Profile>(name: Option<&String>) -> Option<&Path> {
+    name.filter(|name| P::bundled(name).is_none()).map(Path::new)
 }
 
 /// The bundled profile of a name, or the profile in the file of that name.
-fn profile<T>(
-    what: &'static str,
-    name: &str,
-    bundled: fn(&str) -> Option<T>,
-    bundled_names: impl Iterator<Item = &'static str>,
-    parse: fn(&str, &str) -> Result<T, CompileError>,
-) -> Result<T, SceneFileError> {
-    if let Some(profile) = bundled(name) {
+pub(crate) fn profile<P: Profile>(name: &str) -> Result<P, SceneFileError> {
+    if let Some(profile) = P::bundled(name) {
         return Ok(profile);
     }
-    match input::read_text(Path::new(name), input::TOML_MAX_BYTES) {
-        Ok(text) => Ok(parse(&text, name)?),
-        Err(source) => Err(SceneFileError::UnreadableProfile {
-            what,
-            file: name.to_owned(),
-            nearest: Nearest::new(name, bundled_names),
-            source,
-        }),
-    }
+    let unreadable = |source| SceneFileError::UnreadableProfile {
+        what: P::KIND,
+        file: name.to_owned(),
+        nearest: Nearest::new(name, P::bundled_names()),
+        source,
+    };
+    let text = input::read_text(Path::new(name), input::TOML_MAX_BYTES).map_err(unreadable)?;
+    Ok(P::parse(&text, name)?)
 }
 
 /// The folder that the names of pictures and profiles in a scene are relative to.

@@ -8,7 +8,7 @@ use std::thread::{self, sleep};
 use std::time::Duration;
 
 use frixel_hil_sim::Person;
-use frixel_scene::FingerProfile;
+use frixel_scene::{FingerProfile, Profile};
 use serde_json::Value;
 use tempfile::TempDir;
 

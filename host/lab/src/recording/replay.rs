@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use frixel_felt::recorder::MarkedEvent;
-use frixel_hil_sim::{RigConfig, Stroke, TouchConfig};
+use frixel_hil_sim::{RigConfig, Stroke};
 use frixel_play::{Feed, GoesOn, SimulationError, simulate_by};
-use frixel_scene::{CompileError, FingerProfile, Program, Scene, Screen, brief, compile_draft, parse_touch_source};
+use frixel_scene::{CompileError, NamedProfile, Profile, ProfileError, Program, Scene, brief, compile_draft};
 use thiserror::Error;
 
 use super::replayed_changes::ReplayedChanges;
@@ -58,17 +58,12 @@ pub enum ReplayError {
         /// What the file is.
         name: String,
     },
-    /// A profile of another frixel.
-    #[error("this frixel has no {what} called {}: use the one that recorded it", brief(.name))]
-    NotBundled {
-        /// What it is.
-        what: &'static str,
-        /// Its name.
-        name: String,
-    },
-    /// Its scene or a profile has mistakes.
+    /// Its scene has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// A profile of it is not bundled, or has mistakes.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// Its stroke has mistakes.
     #[error("its stroke cannot be read: {0}")]
     Stroke(#[from] StrokeFileError),
@@ -91,7 +86,7 @@ impl Recording {
         let program = compile(&scene)?;
         let stroke = stroke(&options, &files)?;
         let feed = feed(&self.metadata, &options, &files)?;
-        let inputs = (stroke, touch(&options, &files)?);
+        let inputs = (stroke, profile(options.touch.as_ref(), PlayOptions::TOUCH, &files)?);
         let mut simulation = options.simulation(&scene, &program, inputs, &RigConfig::default())?;
         let is_short = options.interrupted || self.is_cut_off;
         let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
@@ -192,21 +187,25 @@ fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result
 /// A scene of the recording, which names the files `named`, with the finger and the screen that replaced its own.
 fn scene(text: &str, named: &FileBytes, options: &PlayOptions, files: &FileBytes) -> Result<Scene, ReplayError> {
     let mut scene = Scene::parse(text, SCENE, named)?;
-    if let Some(name) = &options.screen {
-        let screen = match files.get(PlayOptions::SCREEN) {
-            Some(bytes) => Screen::parse(&String::from_utf8_lossy(bytes), PlayOptions::SCREEN)?,
-            None => bundled(Screen::bundled(name), PlayOptions::SCREEN, name)?,
-        };
+    if let Some(screen) = profile(options.screen.as_ref(), PlayOptions::SCREEN, files)? {
         scene = scene.with_screen(screen, PlayOptions::SCREEN);
     }
-    if let Some(name) = &options.finger {
-        let finger = match files.get(PlayOptions::FINGER) {
-            Some(bytes) => FingerProfile::parse(&String::from_utf8_lossy(bytes), PlayOptions::FINGER)?,
-            None => bundled(FingerProfile::bundled(name), PlayOptions::FINGER, name)?,
-        };
+    if let Some(finger) = profile(options.finger.as_ref(), PlayOptions::FINGER, files)? {
         scene = scene.with_finger(finger, PlayOptions::FINGER);
     }
     Ok(scene)
+}
+
+/// The profile of an option, from the file `file` of the recording, or else the bundled one.
+fn profile<P: Profile>(option: Option<&String>, file: &str, files: &FileBytes) -> Result<Option<P>, ReplayError> {
+    let Some(name) = option else { return Ok(None) };
+    let text = files.get(file).map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    let name = match &text {
+        Some(_) => file.to_owned(),
+        None if name == PlayOptions::FILE => return Err(missing(file)),
+        None => name.clone(),
+    };
+    Ok(Some(NamedProfile { name, text }.read()?))
 }
 
 /// The stroke of a file.
@@ -218,20 +217,6 @@ fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, Re
     Ok(Some(StrokeFile::read(bytes.as_slice())?.stroke))
 }
 
-fn touch(options: &PlayOptions, files: &FileBytes) -> Result<Option<TouchConfig>, ReplayError> {
-    Ok(match (&options.touch, files.get(PlayOptions::TOUCH)) {
-        (None, _) => None,
-        (Some(_), Some(bytes)) => Some(parse_touch_source(&String::from_utf8_lossy(bytes), PlayOptions::TOUCH)?),
-        (Some(name), None) if name == PlayOptions::FILE => return Err(missing(PlayOptions::TOUCH)),
-        (Some(name), None) => Some(bundled(TouchConfig::bundled(name), PlayOptions::TOUCH, name)?),
-    })
-}
-
 fn missing(name: &str) -> ReplayError {
     ReplayError::MissingFile { name: name.to_owned() }
-}
-
-/// A bundled profile, which the same version has.
-fn bundled<T>(found: Option<T>, what: &'static str, name: &str) -> Result<T, ReplayError> {
-    found.ok_or_else(|| ReplayError::NotBundled { what, name: name.to_owned() })
 }

@@ -21,13 +21,10 @@ use frixel_hil_sim::{
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
-use crate::simulate::REPEAT_PAUSE_S;
+use crate::simulate::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, endless_sweep, screen_m};
 
 use host::Host;
 use line::ScenarioLine;
-
-/// Duration of the sweep of a scenario without a stroke, s.
-const SWEEP_S: f64 = 3.0;
 
 /// What a scenario has shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,15 +128,11 @@ pub fn stroke_and_world(
     let world = config.with(&WorldOptions { ideal: !scenario.is_realistic, ..WorldOptions::default() });
     let stroke = if let Some(stroke) = &scenario.stroke {
         let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
-        Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s)
+        Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s).and_then(|stroke| stroke.looped(REPEAT_PAUSE_S))
     } else {
-        let header = programs.get(&scenario.scene).map(|program| program.header);
-        let [width_m, height_m] =
-            header.map_or([0.1; 2], |header| [header.screen_width_m, header.screen_height_m].map(f64::from));
-        Stroke::sweep(width_m, height_m, SWEEP_S)
+        endless_sweep(programs.get(&scenario.scene).map_or(BUNDLED_SCREEN_M, screen_m))
     };
-    let looped = stroke.and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
-    let stroke = looped.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;
+    let stroke = stroke.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;
     Ok((stroke, world))
 }
 

@@ -25,7 +25,7 @@ use metric::METRICS;
 pub use metric::{Goal, Human, MetricScore};
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use metric::{interval, metric_keys};
-pub use trials::{TrialPlan, TrialsError, Way};
+pub use trials::{TrialPlan, TrialStroke, TrialsError};
 
 /// Plays of which a thread's samples wait in memory: those of all plays together would not fit.
 const PLAYS_PER_THREAD: usize = 4;

@@ -9,21 +9,21 @@ use frixel_scene::{CompileError, Program, Scene};
 use thiserror::Error;
 
 use super::{Trial, TrialFinger};
-
-/// Makes the stroke of a person, as [`Stroke::human`] does.
-type Generator = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
+use crate::GeneratedStroke;
 
 /// Where a simulated finger goes.
 #[derive(Clone, Debug)]
-pub enum Way {
-    /// Touches of people with the accelerations of recorded ones after smoothing, another for each stroke.
-    Human,
-    /// As [`Self::Human`], with the accelerations before smoothing.
-    HumanRough,
-    /// An even sweep over the screen.
-    Sweep,
-    /// This stroke.
-    Stroke(Stroke),
+pub enum TrialStroke {
+    /// Along strokes that are made: one of its own for each number, if it is of people.
+    Generated(GeneratedStroke),
+    /// Along this stroke.
+    Own(Stroke),
+}
+
+impl From<GeneratedStroke> for TrialStroke {
+    fn from(stroke: GeneratedStroke) -> Self {
+        Self::Generated(stroke)
+    }
 }
 
 /// Why there are no trials.
@@ -44,8 +44,8 @@ pub enum TrialsError {
 #[derive(Clone, Debug)]
 pub struct TrialPlan {
     /// Where the finger goes.
-    pub way: Way,
-    /// Number of strokes of [`Way::Human`] and [`Way::HumanRough`]; the other ways have one.
+    pub stroke: TrialStroke,
+    /// Number of strokes, if they are of people; there is one of the others.
     pub strokes: u64,
     /// Repetitions of each stroke.
     pub seeds: u64,
@@ -86,13 +86,9 @@ impl TrialPlan {
     ) -> Result<Vec<Trial>, StrokeError> {
         let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
         let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
-        let strokes = match &self.way {
-            Way::Human => self.human_strokes("human", Stroke::human, (width_m, height_m), first_stroke, goes_on)?,
-            Way::HumanRough => {
-                self.human_strokes("human-rough", Stroke::human_rough, (width_m, height_m), first_stroke, goes_on)?
-            }
-            Way::Sweep => vec![("sweep".to_owned(), Stroke::sweep(width_m, height_m, self.seconds)?)],
-            Way::Stroke(stroke) => vec![("file".to_owned(), stroke.clone())],
+        let strokes = match &self.stroke {
+            TrialStroke::Generated(stroke) => self.generated(*stroke, [width_m, height_m], first_stroke, goes_on)?,
+            TrialStroke::Own(stroke) => vec![("file".to_owned(), stroke.clone())],
         };
         let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {
             let first_seed = 1 + (number - 1) * self.seeds;
@@ -107,19 +103,20 @@ impl TrialPlan {
         Ok(trials.collect())
     }
 
-    fn human_strokes(
+    /// The strokes with their names, from the number `first`.
+    fn generated(
         &self,
-        name: &str,
-        hand: Generator,
-        (width_m, height_m): (f64, f64),
+        stroke: GeneratedStroke,
+        screen_m: [f64; 2],
         first: u64,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<(String, Stroke)>, StrokeError> {
-        let stroke = |seed| {
-            let stroke = hand(width_m, height_m, self.seconds, self.median_speed_m_per_s, seed)?;
-            Ok((format!("{name} {seed}"), stroke))
-        };
-        (first..first + self.strokes).take_while(|_| goes_on().is_continue()).map(stroke).collect()
+        let made = |number| stroke.stroke(screen_m, self.seconds, self.median_speed_m_per_s, number);
+        if !stroke.is_of_people() {
+            return Ok(vec![(stroke.name().to_owned(), made(first)?)]);
+        }
+        let numbers = (first..first + self.strokes).take_while(|_| goes_on().is_continue());
+        numbers.map(|number| Ok((format!("{} {number}", stroke.name()), made(number)?))).collect()
     }
 }
 

@@ -25,6 +25,15 @@ const MIDDLE_PART: f64 = 0.2;
 /// A finger slides along an axis if this part of its way, at least, does.
 const ALONG_PART: f64 = 0.5;
 
+/// Width and height of the screen of most bundled scenes, m.
+pub const BUNDLED_SCREEN_M: [f64; 2] = [0.12, 0.11];
+
+/// A sweep over a screen of this width and height, in m, repeated without end: the stroke of a board whose scene is not
+/// known beforehand.
+pub fn endless_sweep([width_m, height_m]: [f64; 2]) -> Result<Stroke, StrokeError> {
+    Stroke::sweep(width_m, height_m, SWEEP_S)?.looped(REPEAT_PAUSE_S)
+}
+
 /// An even stroke over the screen of a program, for `seconds`, or for as long as it takes to cross the middle of every
 /// layer: first a sweep over the screen, and then a stroke over each layer whose middle the sweep misses, across its
 /// stripes, along its axis and back, or, with neither, across its shorter side.

@@ -2,28 +2,51 @@
 //!
 //! A world without a play of its own, as in a score or a scenario, is made of [`WorldOptions`] alone.
 
+mod checks;
 mod default_stroke;
 mod options;
 
 use frixel_hil_sim::{Person, RigConfig, Stroke, StrokeError, TouchConfig, WorldOptions};
 use frixel_model::ParameterError;
 use frixel_play::Simulation;
-use frixel_scene::{CompileError, Program, Scene};
+use frixel_scene::{CompileError, Program, Scene, Shown};
 use thiserror::Error;
 
-pub use default_stroke::{REPEAT_PAUSE_S, default_stroke};
+pub use checks::{check_duration, part_off_screen, side_mm, ticks_per_row};
+pub use default_stroke::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, default_stroke, endless_sweep};
 pub use options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError};
 
 /// Why options describe no play.
 #[derive(Debug, Error)]
 pub enum PlayOptionsError {
     /// Rows are not a whole number of ticks apart.
-    #[error("rows_per_s divides {tick_hz} evenly, found {found}")]
+    #[error("{found} rows a second do not divide the board's {tick_hz} ticks a second; give {nearest}")]
     RowRate {
         /// Rows a second.
         found: u32,
         /// Ticks a second.
         tick_hz: u32,
+        /// The nearest rates that do.
+        nearest: String,
+    },
+    /// The play is shorter than a tick, or longer than a day.
+    #[error("a play lasts from a tick of the board, {tick_s} s, to a day, {STROKE_MAX_S} s; found {} s", Shown(*.seconds))]
+    Duration {
+        /// Its duration, s.
+        seconds: f64,
+        /// Duration of a tick, s.
+        tick_s: f64,
+    },
+    /// The finger never touches the screen.
+    #[error(
+        "the stroke is nowhere on the screen, which is {width_mm} by {height_mm} mm: give places in mm from its top \
+         left corner"
+    )]
+    OffScreen {
+        /// Width of the screen, mm.
+        width_mm: f64,
+        /// Its height, mm.
+        height_mm: f64,
     },
     /// The options describe no stroke.
     #[error(transparent)]
@@ -51,9 +74,7 @@ impl PlayOptions {
         rig: &RigConfig,
     ) -> Result<Simulation, PlayOptionsError> {
         let tick_hz = rig.board.tick_hz;
-        if self.rows_hz == 0 || !tick_hz.is_multiple_of(self.rows_hz) {
-            return Err(PlayOptionsError::RowRate { found: self.rows_hz, tick_hz });
-        }
+        let ticks_per_row = ticks_per_row(self.rows_hz, tick_hz)?;
         let seconds = self.seconds.or(self.stream_s);
         let stroke = match stroke {
             Some(stroke) => Some(stroke),
@@ -61,6 +82,8 @@ impl PlayOptions {
         };
         let stroke = stroke.map_or_else(|| default_stroke(program, seconds), Ok)?;
         let seconds = seconds.unwrap_or(stroke.duration_s());
+        check_duration(seconds, tick_hz)?;
+        part_off_screen(&stroke, screen_m(program), seconds)?;
         let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
         let own_finger = |seed| Person::drawn(seed).own_finger(1e-6 * scene.screen().coating_gap_um());
@@ -74,7 +97,7 @@ impl PlayOptions {
             rig: rig.for_drafts().with(&world),
             seconds,
             seed: self.seed,
-            ticks_per_row: tick_hz / self.rows_hz,
+            ticks_per_row,
             // In steady sliding, the simulated finger is then more than the scene's under its load.
             through_finger: !self.ideal || world.finger.is_some() || stroke.has_loads(),
             stroke,
@@ -82,6 +105,7 @@ impl PlayOptions {
     }
 }
 
-fn screen_m(program: &Program) -> [f64; 2] {
+/// Width and height of a program's screen, m.
+pub fn screen_m(program: &Program) -> [f64; 2] {
     [program.header.screen_width_m.into(), program.header.screen_height_m.into()]
 }

@@ -4,13 +4,15 @@ use frixel_hil_sim::{Point, Stroke, StrokeError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::GeneratedStroke;
+
 /// Most times that a finger goes along a straight stroke.
 const TIMES_MAX: u32 = 100_000;
 /// Longest stroke: one day, in s.
 pub const STROKE_MAX_S: f64 = 86_400.0;
-/// Duration of a person's stroke unless another is given, s, and the longest.
-const HUMAN_S: f64 = 10.0;
-const HUMAN_MAX_S: f64 = 600.0;
+/// Duration of a generated stroke unless another is given, s, and the longest.
+const GENERATED_S: f64 = 10.0;
+const GENERATED_MAX_S: f64 = 600.0;
 /// Speed of a straight stroke unless another is given, m/s.
 const STRAIGHT_M_PER_S: f64 = 0.1;
 /// Time between two places of a minimum-jerk stroke that goes back and forth, s.
@@ -78,7 +80,7 @@ impl PlayOptions {
 /// The options of a stroke. Without any, the stroke is the default one of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StrokeOptions {
-    /// `human`, `human-rough`, or [`PlayOptions::FILE`].
+    /// The name of a [`GeneratedStroke`], or [`PlayOptions::FILE`].
     pub name: Option<String>,
     /// Start of a straight stroke from the top left corner of the screen, m.
     pub from_m: Option<[f64; 2]>,
@@ -119,42 +121,29 @@ pub enum StrokeOptionsError {
     /// A straight stroke cannot be made.
     #[error(transparent)]
     Straight(StrokeError),
-    /// A person's stroke cannot be made on this screen.
+    /// A stroke cannot be generated on this screen.
     #[error(transparent)]
-    Human(StrokeError),
+    Generated(StrokeError),
 }
 
-/// Makes the stroke of a person, as [`Stroke::human`] does.
-type Human = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, StrokeError>;
-
 impl StrokeOptions {
-    /// The name of a person's stroke.
-    pub const HUMAN: &'static str = "human";
-    /// The name of a person's stroke with the accelerations before smoothing.
-    pub const HUMAN_ROUGH: &'static str = "human-rough";
-
-    /// Whether a stroke of this name is generated, and not that of a file.
-    pub fn is_generated(name: &str) -> bool {
-        human(name).is_some()
-    }
-
     /// Whether the stroke is that of a file.
     pub fn is_from_file(&self) -> bool {
         self.name.as_deref() == Some(PlayOptions::FILE)
     }
 
-    /// The stroke that the options describe; `None` without options, and for that of a file. A person's stroke covers a
+    /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers a
     /// screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
     pub fn generated(
         &self,
-        [width_m, height_m]: [f64; 2],
+        screen_m: [f64; 2],
         seconds: Option<f64>,
         seed: u64,
     ) -> Result<Option<Stroke>, StrokeOptionsError> {
-        if let Some(human) = self.name.as_deref().and_then(human) {
-            let seconds = self.human_seconds.or(seconds).unwrap_or(HUMAN_S).min(HUMAN_MAX_S);
-            let stroke = human(width_m, height_m, seconds, None, self.human_seed.unwrap_or(seed));
-            return stroke.map(Some).map_err(StrokeOptionsError::Human);
+        if let Some(generated) = self.name.as_deref().and_then(GeneratedStroke::named) {
+            let seconds = self.human_seconds.or(seconds).unwrap_or(GENERATED_S).min(GENERATED_MAX_S);
+            let stroke = generated.stroke(screen_m, seconds, None, self.human_seed.unwrap_or(seed));
+            return stroke.map(Some).map_err(StrokeOptionsError::Generated);
         }
         let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
         match self.from_m.zip(self.to_m) {
@@ -183,15 +172,6 @@ impl StrokeOptions {
     }
 }
 
-/// The strokes of a person with this name, if it is not that of a file.
-fn human(name: &str) -> Option<Human> {
-    match name {
-        StrokeOptions::HUMAN => Some(Stroke::human),
-        StrokeOptions::HUMAN_ROUGH => Some(Stroke::human_rough),
-        _ => None,
-    }
-}
-
 /// Goes along a stroke `times` times, back and forth.
 fn back_and_forth(once: &Stroke, times: u32, is_curved_in_time: bool) -> Result<Stroke, StrokeError> {
     let once_s = once.duration_s();
@@ -213,7 +193,7 @@ mod tests {
     const SCREEN_M: [f64; 2] = [0.12, 0.08];
 
     fn human(seed: Option<u64>, seconds: Option<f64>) -> StrokeOptions {
-        let name = Some(StrokeOptions::HUMAN.to_owned());
+        let name = Some(GeneratedStroke::Human.name().to_owned());
         StrokeOptions { name, human_seed: seed, human_seconds: seconds, ..StrokeOptions::default() }
     }
 

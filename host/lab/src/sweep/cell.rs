@@ -3,41 +3,20 @@
 use std::collections::BTreeMap;
 
 use frixel_felt::judge::Verdict;
-use frixel_hil_sim::{Board, Person, StrokeError, TouchConfig, WorldOptions};
+use frixel_hil_sim::{Board, Person, StrokeError, WorldOptions};
 use frixel_model::ParameterError as ContactError;
 use frixel_play::{GoesOn, SimulationError};
-use frixel_scene::{CompileError, Program, Scene, Screen, compile, parse_touch_source};
+use frixel_scene::{CompileError, NamedProfile, ProfileError, Program, Scene, compile};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::parameter::Value;
+use crate::GeneratedStroke;
 use crate::hash::sha256;
-use crate::score::{Score, TrialFinger, TrialPlan, Verdicts, Way};
+use crate::score::{Score, TrialFinger, TrialPlan, Verdicts};
 
 /// Digits of a hash that make a key.
 const KEY_DIGITS: usize = 32;
-
-/// What the strokes of simulated people are made after.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Hand {
-    /// The accelerations of recorded people after smoothing.
-    #[default]
-    Human,
-    /// Their accelerations before smoothing.
-    HumanRough,
-    /// An even sweep over the screen.
-    Sweep,
-}
-
-/// A screen or a touch source.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Profile {
-    /// Name, as results have it.
-    pub name: String,
-    /// Text of its file; absent for a bundled one.
-    pub text: Option<String>,
-}
 
 /// All that the plays of one simulated finger need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,13 +33,13 @@ pub struct Cell {
     /// The bytes of the files that the scene names, by these names.
     pub files: BTreeMap<String, Vec<u8>>,
     /// The screen; absent for the scene's own.
-    pub screen: Option<Profile>,
+    pub screen: Option<NamedProfile>,
     /// The touch source.
-    pub touch: Profile,
+    pub touch: NamedProfile,
     /// Number of the simulated person, from 1.
     pub person: u64,
-    /// What the strokes are made after.
-    pub stroke: Hand,
+    /// How the strokes are made.
+    pub stroke: GeneratedStroke,
     /// Number of strokes.
     pub strokes: u64,
     /// Repetitions of each stroke.
@@ -121,17 +100,12 @@ pub enum CellError {
         /// Version of the cell.
         found: String,
     },
-    /// A bundled profile is unknown.
-    #[error("there is no bundled {what} called {name}")]
-    NotBundled {
-        /// What it is.
-        what: &'static str,
-        /// Its name.
-        name: String,
-    },
-    /// The scene, the screen or the touch source has mistakes.
+    /// The scene has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// The screen or the touch source is not bundled, or has mistakes.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// The contact model refuses the person on this screen.
     #[error("the contact model refuses the finger of person {person}: {source}")]
     Finger {
@@ -177,11 +151,7 @@ impl Cell {
         let finger =
             TrialFinger::of_person(person, coating_gap_um).map_err(|source| CellError::Finger { person, source })?;
         let trials = TrialPlan {
-            way: match self.stroke {
-                Hand::Human => Way::Human,
-                Hand::HumanRough => Way::HumanRough,
-                Hand::Sweep => Way::Sweep,
-            },
+            stroke: self.stroke.into(),
             strokes: self.strokes,
             seeds: self.seeds,
             seconds: self.seconds,
@@ -205,24 +175,14 @@ impl Cell {
 
     fn scene(&self) -> Result<Scene, CellError> {
         let scene = Scene::parse(&self.text, &self.scene, &self.files)?;
-        let Some(Profile { name, text }) = &self.screen else { return Ok(scene) };
-        let screen = match text {
-            Some(text) => Screen::parse(text, name)?,
-            None => {
-                Screen::bundled(name).ok_or_else(|| CellError::NotBundled { what: "screen", name: name.clone() })?
-            }
-        };
-        Ok(scene.with_screen(screen, name))
+        match &self.screen {
+            Some(screen) => Ok(scene.with_screen(screen.read()?, &screen.name)),
+            None => Ok(scene),
+        }
     }
 
     fn world(&self) -> Result<WorldOptions, CellError> {
-        let Profile { name, text } = &self.touch;
-        let touch = match text {
-            Some(text) => parse_touch_source(text, name)?,
-            None => TouchConfig::bundled(name)
-                .ok_or_else(|| CellError::NotBundled { what: "touch source", name: name.clone() })?,
-        };
-        Ok(WorldOptions { ideal: self.ideal, touch: Some(touch), ..WorldOptions::default() })
+        Ok(WorldOptions { ideal: self.ideal, touch: Some(self.touch.read()?), ..WorldOptions::default() })
     }
 
     fn result(&self, score: &Score, voltage_v_rms: f64) -> CellResult {

@@ -17,7 +17,7 @@ mod tables;
 
 use serde::{Deserialize, Serialize};
 
-pub use cell::{Cell, CellError, CellResult, Hand, LayerResult, Profile};
+pub use cell::{Cell, CellError, CellResult, LayerResult};
 pub use parameter::Value;
 pub use plan::{Plan, PlanError, Range, Source, Values};
 pub use result_file::CellResultError;

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{Screen, brief, check_toml};
+use frixel_scene::{NamedProfile, Profile, Screen, brief, check_toml};
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::cell::{Cell, Hand, Profile};
+use super::cell::Cell;
 use super::parameter::{Value, with_field};
+use crate::GeneratedStroke;
 
 /// Most cells of a plan.
 const CELLS_MAX: usize = 1_000_000;
@@ -43,7 +44,7 @@ pub struct Plan {
     pub people: u64,
     /// What their strokes are made after.
     #[serde(default)]
-    pub stroke: Hand,
+    pub stroke: GeneratedStroke,
     /// Strokes of each person.
     #[serde(default = "four")]
     pub strokes: u64,
@@ -61,6 +62,18 @@ pub struct Plan {
     /// Values of fields of the scenes, by the path of the field: `drive.voltage_max_v_rms`, `layer.2.high_n`.
     #[serde(default)]
     pub parameters: BTreeMap<String, Values>,
+}
+
+/// The profiles that a plan names; `text` reads the files of those that are not bundled.
+fn named<P: Profile, E>(
+    names: &[String],
+    text: impl Fn(&'static str, &str) -> Result<String, E>,
+) -> Result<Vec<NamedProfile>, E> {
+    let named = |name: &String| {
+        let text = if P::bundled(name).is_some() { None } else { Some(text(P::KIND, name)?) };
+        Ok(NamedProfile { name: name.clone(), text })
+    };
+    names.iter().map(named).collect()
 }
 
 fn slowest_touch() -> Vec<String> {
@@ -189,20 +202,19 @@ impl Plan {
         scene: impl Fn(&str) -> Result<Source, E>,
         text: impl Fn(&'static str, &str) -> Result<String, E>,
     ) -> Result<Vec<Cell>, E> {
-        let profile = |what, name: &String, is_bundled: bool| {
-            let text = if is_bundled { None } else { Some(text(what, name)?) };
-            Ok::<_, E>(Profile { name: name.clone(), text })
-        };
         let scenes: Vec<Source> = self.scenes.iter().map(|name| scene(name)).collect::<Result<_, _>>()?;
-        let screen = |name: &String| profile("screen", name, Screen::bundled(name).is_some());
-        let screens: Vec<Profile> = self.screens.iter().map(screen).collect::<Result<_, _>>()?;
-        let touch = |name: &String| profile("touch source", name, TouchConfig::bundled(name).is_some());
-        let touch: Vec<Profile> = self.touch.iter().map(touch).collect::<Result<_, _>>()?;
+        let screens = named::<Screen, E>(&self.screens, &text)?;
+        let touch = named::<TouchConfig, E>(&self.touch, &text)?;
         Ok(self.combinations(&scenes, &screens, &touch)?)
     }
 
-    fn combinations(&self, scenes: &[Source], screens: &[Profile], touch: &[Profile]) -> Result<Vec<Cell>, PlanError> {
-        let screens: Vec<Option<&Profile>> =
+    fn combinations(
+        &self,
+        scenes: &[Source],
+        screens: &[NamedProfile],
+        touch: &[NamedProfile],
+    ) -> Result<Vec<Cell>, PlanError> {
+        let screens: Vec<Option<&NamedProfile>> =
             if screens.is_empty() { vec![None] } else { screens.iter().map(Some).collect() };
         let mut cells = Vec::new();
         for scene in scenes {

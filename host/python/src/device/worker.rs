@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration;
 
 use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldOptions};
-use frixel_lab::simulate::REPEAT_PAUSE_S;
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, WorldOptions};
+use frixel_lab::simulate::{BUNDLED_SCREEN_M, endless_sweep};
 use frixel_play::RigStream;
 use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
 use frixel_scene::Program;
@@ -20,11 +20,6 @@ use pyo3::PyErr;
 use super::SIMULATOR;
 use super::observed::Observed;
 
-/// Size of the screen that the simulated finger's stroke covers: that of the bundled scenes.
-const SCREEN_WIDTH_M: f64 = 0.12;
-const SCREEN_HEIGHT_M: f64 = 0.11;
-/// Duration of its stroke, s.
-const STROKE_S: f64 = 3.0;
 /// Seed of the simulated world.
 const SEED: u64 = 1;
 /// Time for an orderly end of a wait that a signal interrupts.
@@ -159,8 +154,7 @@ fn simulated(
     ends: Ends<'_>,
     interrupted: &Interrupted,
 ) -> Result<(), Trouble> {
-    let stroke =
-        Stroke::sweep(SCREEN_WIDTH_M, SCREEN_HEIGHT_M, STROKE_S).and_then(|stroke| stroke.looped(REPEAT_PAUSE_S));
+    let stroke = endless_sweep(BUNDLED_SCREEN_M);
     let config = RigConfig::default().for_drafts().with(&WorldOptions::default());
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;

@@ -12,13 +12,14 @@ use frixel_layers::{FingerLaw, LawPoint};
 
 use super::compile_error::CompileError;
 use super::fields::read_text;
+use super::profile::Profile;
 
 pub(super) use read::read;
 
 /// The parameters of a finger on a screen.
 ///
 /// ```
-/// use frixel_scene::{Evidence, FingerProfile};
+/// use frixel_scene::{Evidence, FingerProfile, Profile};
 ///
 /// let dry = FingerProfile::bundled("dry").expect("it is bundled");
 /// assert_eq!(dry.evidence, Evidence::Assumed);
@@ -203,25 +204,9 @@ impl Evidence {
 }
 
 impl FingerProfile {
-    /// Reads the text of a finger profile. Messages call the file `name`.
-    pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this finger profile", read)
-    }
-
     /// The text of the profile as a file of its own, which [`Self::parse`] reads back to an equal profile.
     pub fn to_toml(&self) -> String {
         write::text(self)
-    }
-
-    /// The names of the bundled profiles, the example first.
-    pub fn bundled_names() -> impl Iterator<Item = &'static str> {
-        bundled::TEXTS.iter().map(|(name, _)| *name)
-    }
-
-    /// The bundled profile of a name.
-    pub fn bundled(name: &str) -> Option<Self> {
-        let (name, text) = bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name)?;
-        Self::parse(text, name).ok()
     }
 
     /// The text of the bundled profile of a name, with its reasons as comments.
@@ -232,5 +217,21 @@ impl FingerProfile {
     /// The finger of a scene that names none.
     pub fn example() -> Self {
         bundled::EXAMPLE
+    }
+}
+
+impl Profile for FingerProfile {
+    const KIND: &'static str = "finger";
+
+    fn bundled_names() -> Vec<&'static str> {
+        bundled::TEXTS.iter().map(|(name, _)| *name).collect()
+    }
+
+    fn bundled(name: &str) -> Option<Self> {
+        Self::parse(Self::bundled_text(name)?, name).ok()
+    }
+
+    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
+        read_text(text, name, "this finger profile", read)
     }
 }

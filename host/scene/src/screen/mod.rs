@@ -8,13 +8,14 @@ mod tests;
 
 use super::compile_error::CompileError;
 use super::fields::read_text;
+use super::profile::Profile;
 
 pub(super) use read::read;
 
 /// Parameters of a screen.
 ///
 /// ```
-/// use frixel_scene::Screen;
+/// use frixel_scene::{Profile, Screen};
 ///
 /// let screen = Screen::parse("width_mm = 120\nheight_mm = 80\n", "small.toml")?;
 /// assert_eq!(screen.coating, Screen::example().coating);
@@ -54,11 +55,6 @@ impl Slab {
 }
 
 impl Screen {
-    /// Reads the text of a screen's file. Messages call the file `name`.
-    pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this screen", read)
-    }
-
     /// The screen of a scene that names none: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its own.
     pub fn example() -> Self {
         Self {
@@ -72,18 +68,24 @@ impl Screen {
         }
     }
 
-    /// The bundled screen of a name.
-    pub fn bundled(name: &str) -> Option<Self> {
-        Self::bundled_names().find(|bundled| *bundled == name).map(|_| Self::example())
-    }
-
-    /// The names of the bundled screens.
-    pub fn bundled_names() -> impl Iterator<Item = &'static str> {
-        ["example"].into_iter()
-    }
-
     /// Effective gap of the coating: the sum of thickness over permittivity, in micrometres.
     pub fn coating_gap_um(&self) -> f64 {
         self.coating.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity)
+    }
+}
+
+impl Profile for Screen {
+    const KIND: &'static str = "screen";
+
+    fn bundled_names() -> Vec<&'static str> {
+        vec!["example"]
+    }
+
+    fn bundled(name: &str) -> Option<Self> {
+        (name == "example").then(Self::example)
+    }
+
+    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
+        read_text(text, name, "this screen", read)
     }
 }

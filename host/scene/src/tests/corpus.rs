@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use frixel_testkit::corpus::{self, Case};
 
 use super::*;
-use crate::{FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Screen, Warning};
+use crate::{
+    FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Profile, Screen, Warning,
+};
 
 /// The files of a case, the files shared by all cases, and the scene among them.
 struct Inputs {

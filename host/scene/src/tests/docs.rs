@@ -12,7 +12,7 @@ use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
 use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, PATTERN_MS, REGION, REPEAT, START};
-use crate::{FingerProfile, parse_touch_source};
+use crate::{FingerProfile, Profile};
 
 const DOCS: &str = include_str!("../../../../docs/scene.md");
 const TOUCH_DOCS: &str = include_str!("../../../../docs/touch.md");
@@ -237,7 +237,7 @@ fn numbers_in_the_text_are_right() {
 /// The table of bundled fingers is computed here: on the example screen, at the default limit of the drive.
 #[test]
 fn the_table_of_bundled_fingers_is_right() {
-    for (number, name) in FingerProfile::bundled_names().enumerate() {
+    for (number, name) in FingerProfile::bundled_names().into_iter().enumerate() {
         let Program { reach, header, .. } =
             compile_text(&format!("version = 1\nfinger = \"{name}\"")).expect("it compiles");
         let steps = libm::log(reach.friction_max_n() / reach.natural_friction_n) / libm::log(1.11);
@@ -256,7 +256,7 @@ fn the_table_of_bundled_fingers_is_right() {
 #[test]
 fn the_touch_source_in_the_documents_is_read() {
     let text = TOUCH_DOCS.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("it is there");
-    let source = parse_touch_source(text, "docs/touch.md").expect("it reads");
+    let source = TouchConfig::parse(text, "docs/touch.md").expect("it reads");
     let bits = |source: TouchConfig| [source.lost_share, source.bunched_share, source.pause_rate_hz].map(f64::to_bits);
     assert_eq!(source.rate_hz.to_bits(), 120.0_f64.to_bits());
     assert_eq!(bits(source), bits(TouchConfig::REALISTIC));

@@ -2,7 +2,7 @@
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
 
 use super::*;
-use crate::{Elasticity, Evidence, FingerProfile, Origin, Screen, Warning};
+use crate::{Elasticity, Evidence, FingerProfile, Origin, Profile, Screen, Warning};
 use frixel_layers::Header;
 use frixel_model::{Carrier, Waveform};
 use frixel_wire::hello::feature;

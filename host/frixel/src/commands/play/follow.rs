@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_log_is_not_joined_to_what_a_finger_did_on_a_real_board() {
-        let mut args = PlayArgs::ideal("a.toml".as_ref(), "out".as_ref());
+        let mut args = PlayArgs::ideal("a.toml".as_ref(), "out".as_ref()).unwrap();
         assert!(check_log(&args, false).is_ok());
         args.with_log = Some("felt.csv".into());
         assert!(check_log(&args, true).is_ok());

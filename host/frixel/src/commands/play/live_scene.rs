@@ -219,7 +219,7 @@ mod tests {
             let path = folder.path().join("scene.toml");
             fs::write(&path, SCENE).unwrap();
             fs::write(folder.path().join("part.toml"), part(0.25)).unwrap();
-            let args = PlayArgs { watch: true, ..PlayArgs::ideal(&path, "out".as_ref()) };
+            let args = PlayArgs { watch: true, ..PlayArgs::ideal(&path, "out".as_ref()).unwrap() };
             let (scene, files) = args.profiles.names().load_with_files(&path);
             let config = RigConfig::default();
             let (limits, tick_hz) = (config.board.limits, config.board.tick_hz);

@@ -321,7 +321,7 @@ mod tests {
     #[test]
     fn a_play_of_a_person_that_ends_while_another_one_begins_is_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
-        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
+        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path()).unwrap();
         let files = files(&args);
         fs::write(folder.path().join("summary.json"), "{\"simulated\":false}").unwrap();
         let error = Outputs::create(&args, files, true, &program("plate"), None).err().unwrap().to_string();
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn what_a_person_did_stays_as_a_recording_where_the_other_files_fail() {
         let folder = tempfile::tempdir().unwrap();
-        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path());
+        let args = PlayArgs::ideal("a.toml".as_ref(), folder.path()).unwrap();
         fs::create_dir(folder.path().join(".scene.png.frixel-tmp")).unwrap();
         let plate = program("plate");
         let mut outputs = Outputs::create(&args, files(&args), false, &plate, None).unwrap();
@@ -355,7 +355,8 @@ mod tests {
             writeln!(text, "{t_s},60,40,50,0.25").unwrap();
         }
         fs::write(&log, text + "2,60,40,50,0.25\n").unwrap();
-        let args = PlayArgs { with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref(), &folder.path().join("out")) };
+        let args =
+            PlayArgs { with_log: Some(log), ..PlayArgs::ideal("a.toml".as_ref(), &folder.path().join("out")).unwrap() };
 
         let (first, second) = (program("first"), program("second"));
         let mut outputs = Outputs::create(&args, files(&args), true, &first, None).unwrap();

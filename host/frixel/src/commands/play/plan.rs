@@ -1,6 +1,6 @@
 //! The plan of a play, which is checked as a whole before any file is written.
 
-use frixel_lab::simulate::PlayOptionsError;
+use frixel_lab::simulate::{check_duration, screen_m, ticks_per_row};
 use std::time::Duration;
 
 use crate::commands::error::of_finger;
@@ -9,10 +9,10 @@ use anyhow::{Result, bail};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::RigConfig;
 use frixel_play::{Feed, Simulation};
-use frixel_scene::{Program, Scene, Shown};
+use frixel_scene::{Program, Scene};
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
-use super::super::stroke::{check_on_screen, from_file};
+use super::super::stroke::{from_file, note_off_screen};
 use super::target::Target;
 use super::{PlayArgs, note, note_refusals};
 
@@ -92,8 +92,8 @@ impl Plan {
         target: Target,
         (limits, tick_hz): (&BoardLimits, u32),
     ) -> Result<Self> {
-        let ticks_per_row = ticks_per_row(args.csv_hz, tick_hz)?;
-        args.seconds.map_or(Ok(()), |seconds| check_seconds(seconds, tick_hz))?;
+        let ticks_per_row = ticks_per_row(args.csv_hz, tick_hz).map_err(|error| args.error(error))?;
+        args.seconds.map_or(Ok(()), |seconds| check_duration(seconds, tick_hz))?;
         let program = target.compile(scene, limits, tick_hz)?;
         note_refusals(&args.scene, &program);
         print_notes(&program);
@@ -129,15 +129,9 @@ impl Plan {
     pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: &RigConfig) -> Result<Simulation> {
         let inputs = (args.stroke.file().map(from_file).transpose()?, args.touch.source()?);
         let simulation = args.options(self.stream_s).simulation(scene, &self.program, inputs, rig);
-        let simulation = simulation.map_err(|error| match error {
-            PlayOptionsError::Stroke(error) => args.stroke.error(error),
-            error => error.into(),
-        })?;
-        check_seconds(simulation.seconds, self.tick_hz)?;
+        let simulation = simulation.map_err(|error| args.error(error))?;
         if args.stroke.is_given() {
-            let header = &self.program.header;
-            let (width_m, height_m) = (header.screen_width_m.into(), header.screen_height_m.into());
-            check_on_screen(&args.stroke.name(), &simulation.stroke, width_m, height_m, simulation.seconds)?;
+            note_off_screen(&args.stroke.name(), &simulation.stroke, screen_m(&self.program), simulation.seconds)?;
         }
         self.seconds = Some(simulation.seconds);
         self.has_own_reference = simulation.through_finger;
@@ -217,34 +211,12 @@ pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<()> 
     }
 }
 
-/// Ticks between two rows of `felt.csv`.
-fn ticks_per_row(csv_hz: u32, tick_hz: u32) -> Result<u32> {
-    let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
-    if csv_hz > 0 && divides(&csv_hz) {
-        return Ok(tick_hz / csv_hz);
-    }
-    let below = (1..csv_hz.min(tick_hz)).rev().find(divides);
-    let above = (csv_hz..=tick_hz).find(divides);
-    let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
-    let nearest = nearest.join(" or ");
-    bail!("--csv-hz {csv_hz} does not divide the board's {tick_hz} ticks a second; give {nearest}")
-}
-
 /// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
 /// board sends as many messages as it can, and each row is their mean.
 fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -> u32 {
     let least = tick_hz.div_ceil(TELEMETRY_MAX_HZ);
     let divides = |period: &u32| ticks_per_row.is_multiple_of(*period);
     if program.has_history() { (least..=ticks_per_row).find(divides).unwrap_or(ticks_per_row) } else { ticks_per_row }
-}
-
-/// Rejects a duration that is shorter than a tick.
-fn check_seconds(seconds: f64, tick_hz: u32) -> Result<()> {
-    let tick_s = 1.0 / f64::from(tick_hz);
-    if seconds < tick_s {
-        bail!("{} s is shorter than one tick of the board, {tick_s} s: play for longer", Shown(seconds));
-    }
-    Ok(())
 }
 
 #[cfg(test)]

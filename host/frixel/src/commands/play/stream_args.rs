@@ -16,7 +16,7 @@ use super::target::Target;
 /// The name of standard input.
 const STANDARD_INPUT: &str = "-";
 
-#[derive(Clone, Debug, Default, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct StreamArgs {
     /// Samples of stream layers: a WAV file, or `-` for 16-bit little-endian standard input.
     #[arg(long, value_name = "FILE.wav")]

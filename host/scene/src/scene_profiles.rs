@@ -7,6 +7,7 @@ use super::grammar::FieldSpec;
 use super::log::Log;
 use super::mistake::FileMistake;
 use super::nearest::Nearest;
+use super::profile::Profile;
 use super::screen::{self, Screen};
 use super::tables;
 
@@ -37,42 +38,27 @@ pub(super) struct Profiles {
 /// Reads `screen` and `finger` of a scene: tables, names, or nothing.
 pub(super) fn read(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<Profiles> {
     let (screen_place, finger_place) = (fields.place("screen"), fields.place("finger"));
-    let screen_kind = Profile {
-        field: &tables::scene::SCREEN,
-        read: screen::read,
-        bundled_names: Screen::bundled_names().collect(),
-        bundled: Screen::bundled,
-        parse: |text, name| Screen::parse(text, name).map_err(|error| error.to_string()),
-        example: Screen::example,
-    };
-    let finger_kind = Profile {
-        field: &tables::scene::FINGER,
-        read: finger::read,
-        bundled_names: FingerProfile::bundled_names().collect(),
-        bundled: FingerProfile::bundled,
-        parse: |text, name| FingerProfile::parse(text, name).map_err(|error| error.to_string()),
-        example: FingerProfile::example,
-    };
+    let screen = In { field: &tables::scene::SCREEN, table: screen::read, example: Screen::example };
+    let finger = In { field: &tables::scene::FINGER, table: finger::read, example: FingerProfile::example };
     let has_finger = fields.has("finger");
-    let screen = screen_kind.read(fields, files, log);
-    let finger = finger_kind.read(fields, files, log);
+    let screen = screen.read(fields, files, log);
+    let finger = finger.read(fields, files, log);
     let ((screen, screen_source), (finger, finger_source)) = screen.zip(finger)?;
     let place = if has_finger { finger_place } else { screen_place };
     Some(Profiles { screen, screen_source, finger, finger_source, place })
 }
 
-/// How to read one of the two.
-struct Profile<T> {
+/// Where one of the two stands in a scene file.
+struct In<P> {
     field: &'static FieldSpec,
-    read: fn(Fields, &mut Log) -> Option<T>,
-    bundled_names: Vec<&'static str>,
-    bundled: fn(&str) -> Option<T>,
-    parse: fn(&str, &str) -> Result<T, String>,
-    example: fn() -> T,
+    /// Reads it from a table of the scene.
+    table: fn(Fields, &mut Log) -> Option<P>,
+    /// The one of a scene that has none.
+    example: fn() -> P,
 }
 
-impl<T> Profile<T> {
-    fn read(&self, fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<(T, ProfileSource)> {
+impl<P: Profile> In<P> {
+    fn read(&self, fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<(P, ProfileSource)> {
         if !fields.has(self.field.name) {
             // The field is known even if it is absent.
             let _ = fields.table_or_text(log, self.field);
@@ -80,8 +66,8 @@ impl<T> Profile<T> {
         }
         let place = fields.place(self.field.name);
         match fields.table_or_text(log, self.field)? {
-            TableOrText::Table(table) => (self.read)(*table, log).map(|profile| (profile, ProfileSource::Embedded)),
-            TableOrText::Text(name) => match self.named(&path_of(&name, place, log), files) {
+            TableOrText::Table(table) => (self.table)(*table, log).map(|profile| (profile, ProfileSource::Embedded)),
+            TableOrText::Text(name) => match named(&path_of(&name, place, log), files) {
                 Ok(profile) => Some((profile, ProfileSource::Named(name))),
                 Err(mistake) => {
                     log.add(place, mistake);
@@ -90,31 +76,30 @@ impl<T> Profile<T> {
             },
         }
     }
+}
 
-    /// The bundled profile of a name, or the profile in a file.
-    fn named(&self, name: &str, files: &dyn Files) -> Result<T, FileMistake> {
-        let what = self.field.name;
-        if !is_file_name(name) {
-            let nearest = || Nearest::new(name, self.bundled_names.iter().copied());
-            return (self.bundled)(name).ok_or_else(|| FileMistake::UnknownProfile {
-                what,
-                found: name.to_owned(),
-                nearest: nearest(),
-            });
-        }
-        let unusable = |reason: String| FileMistake::FileUnusable { what, file: name.to_owned(), reason };
-        let bytes = files.bytes(name).map_err(|unavailable| match unavailable {
-            FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
-            FileUnavailable::Missing { place, files } => FileMistake::FileMissing {
-                what,
-                file: name.to_owned(),
-                folder: place,
-                nearest: Nearest::file(file_name(name), &files),
-            },
-        })?;
-        let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
-        (self.parse)(&text, name).map_err(|mistakes| unusable(mistakes.replace('\n', "; ")))
+/// The bundled profile of a name, or the profile in a file.
+fn named<P: Profile>(name: &str, files: &dyn Files) -> Result<P, FileMistake> {
+    let what = P::KIND;
+    if !is_file_name(name) {
+        return P::bundled(name).ok_or_else(|| FileMistake::UnknownProfile {
+            what,
+            found: name.to_owned(),
+            nearest: Nearest::new(name, P::bundled_names()),
+        });
     }
+    let unusable = |reason: String| FileMistake::FileUnusable { what, file: name.to_owned(), reason };
+    let bytes = files.bytes(name).map_err(|unavailable| match unavailable {
+        FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
+        FileUnavailable::Missing { place, files } => FileMistake::FileMissing {
+            what,
+            file: name.to_owned(),
+            folder: place,
+            nearest: Nearest::file(file_name(name), &files),
+        },
+    })?;
+    let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
+    P::parse(&text, name).map_err(|mistakes| unusable(mistakes.to_string().replace('\n', "; ")))
 }
 
 /// The path of a file named at an offset, relative to the scene file's folder, or the name of a bundled profile.

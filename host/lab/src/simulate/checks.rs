@@ -1,0 +1,57 @@
+//! What is asked of the rows, the duration and the stroke of a play.
+
+use frixel_hil_sim::Stroke;
+
+use super::{PlayOptionsError, STROKE_MAX_S};
+
+/// Time between two places of a stroke that are looked at, s.
+const LOOK_PERIOD_S: f64 = 1e-3;
+/// Most places of a stroke that are looked at.
+const LOOKS_MAX: f64 = 1e6;
+
+/// Ticks between two rows of a record, of which `rows_hz` are wanted a second. Refuses a rate that does not divide
+/// `tick_hz`, the board's ticks a second.
+pub fn ticks_per_row(rows_hz: u32, tick_hz: u32) -> Result<u32, PlayOptionsError> {
+    let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
+    if rows_hz > 0 && divides(&rows_hz) {
+        return Ok(tick_hz / rows_hz);
+    }
+    let below = (1..rows_hz.min(tick_hz)).rev().find(divides);
+    let above = (rows_hz.max(1)..=tick_hz).find(divides);
+    let nearest: Vec<String> = [below, above].iter().flatten().map(u32::to_string).collect();
+    Err(PlayOptionsError::RowRate { found: rows_hz, tick_hz, nearest: nearest.join(" or ") })
+}
+
+/// Refuses a play shorter than a tick or longer than a day.
+pub fn check_duration(seconds: f64, tick_hz: u32) -> Result<(), PlayOptionsError> {
+    let tick_s = 1.0 / f64::from(tick_hz);
+    if (tick_s..=STROKE_MAX_S).contains(&seconds) {
+        Ok(())
+    } else {
+        Err(PlayOptionsError::Duration { seconds, tick_s })
+    }
+}
+
+/// The part of the time, from 0 to 1, for which the finger is beside a screen of this width and height, in m, in the
+/// first `seconds` of a stroke. Refuses a stroke that is never on it.
+pub fn part_off_screen(stroke: &Stroke, [width_m, height_m]: [f64; 2], seconds: f64) -> Result<f64, PlayOptionsError> {
+    let end_s = seconds.min(stroke.duration_s());
+    let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);
+    let (mut on, mut off) = (0_u32, 0_u32);
+    for finger in (0..=looks as u32).filter_map(|look| stroke.at(end_s * f64::from(look) / looks)) {
+        if (0.0..=width_m).contains(&finger.x_m) && (0.0..=height_m).contains(&finger.y_m) {
+            on += 1;
+        } else {
+            off += 1;
+        }
+    }
+    match on {
+        0 => Err(PlayOptionsError::OffScreen { width_mm: side_mm(width_m), height_mm: side_mm(height_m) }),
+        _ => Ok(f64::from(off) / f64::from(on + off)),
+    }
+}
+
+/// A side of a screen, which a program stores as f32, as its file has it: in mm, to a micrometre.
+pub fn side_mm(side_m: f64) -> f64 {
+    (1e6 * side_m).round() / 1e3
+}
