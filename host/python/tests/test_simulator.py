@@ -101,7 +101,7 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
     [
         (lambda: Simulator(FLAT, stroke=Stroke.straight((500, 20), (600, 20))).run(), "nowhere on the screen"),
         (lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (60, 20), speed_mm_s=0)).run(), "speed"),
-        (lambda: Simulator(FLAT, rows_per_s=7).run(1), "rows_per_s: 7 rows a second do not divide the board's 40000 ticks a second; give 5 or 8"),
+        (lambda: Simulator(FLAT, rows_per_s=7).run(1), "rows_per_s: 7 rows a second do not .*; give 5 or 8"),
         (lambda: Simulator(FLAT).run(-1), "a play lasts from a tick"),
         (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from a tick"),
         (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]

@@ -30,7 +30,10 @@ pub enum PlayOptionsError {
         nearest: String,
     },
     /// The play is shorter than a tick, or longer than a day.
-    #[error("a play lasts from a tick of the board, {tick_s} s, to a day, {STROKE_MAX_S} s; found {} s", Shown(*.seconds))]
+    #[error(
+        "a play lasts from a tick of the board, {tick_s} s, to a day, {STROKE_MAX_S} s; found {} s",
+        Shown(*.seconds)
+    )]
     Duration {
         /// Its duration, s.
         seconds: f64,
