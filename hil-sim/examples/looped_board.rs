@@ -7,14 +7,14 @@
 
 use std::process::ExitCode;
 
-use frixel_hil_sim::looped_board::Wrong;
+use frixel_hil_sim::looped_board::Defect;
 
 #[cfg(unix)]
 fn main() -> ExitCode {
     use frixel_hil_sim::looped_board::{LoopedRig, TerminalPort};
 
     let Some(wrong) = wrong() else {
-        let names: Vec<&str> = Wrong::ALL.iter().map(|(name, _)| *name).collect();
+        let names: Vec<&str> = Defect::ALL.iter().map(|(name, _)| *name).collect();
         eprintln!("say what is wrong, one of: {}", names.join(", "));
         return ExitCode::FAILURE;
     };
@@ -41,6 +41,6 @@ fn main() -> ExitCode {
 }
 
 /// What is wrong with the board, by the first argument.
-fn wrong() -> Option<Wrong> {
-    std::env::args().nth(1).map_or(Some(Wrong::Nothing), |name| Wrong::named(&name))
+fn wrong() -> Option<Defect> {
+    std::env::args().nth(1).map_or(Some(Defect::Nothing), |name| Defect::named(&name))
 }

@@ -1,11 +1,11 @@
 //! A simulated board with the self-test's wires and at most one defect, which [`frixel_board::self_test`] must find.
 //! Its session, ticker and supervisor are the firmware's own.
 
+mod defect;
 mod one_shot;
 #[cfg(unix)]
 #[allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "a terminal of another process, in real time")]
 mod terminal_port;
-mod wrong;
 
 use core::fmt::{Arguments, Write};
 
@@ -18,11 +18,11 @@ use frixel_session::Session;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
+pub use defect::Defect;
+use defect::Progress;
 use one_shot::OneShot;
 #[cfg(unix)]
 pub use terminal_port::TerminalPort;
-use wrong::Progress;
-pub use wrong::Wrong;
 
 /// Ticks of a round of the main loop.
 const ROUND_TICKS: u32 = 4;
@@ -56,7 +56,7 @@ pub trait Port {
 pub struct LoopedRig<P> {
     port: P,
     reader: LineReader,
-    wrong: Wrong,
+    wrong: Defect,
     session: Session<'static>,
     ticker: Ticker<'static>,
     status: Status,
@@ -72,8 +72,8 @@ pub struct LoopedRig<P> {
 }
 
 impl<P: Port> LoopedRig<P> {
-    /// A board with one defect, or [`Wrong::Nothing`].
-    pub fn new(port: P, wrong: Wrong) -> Self {
+    /// A board with one defect, or [`Defect::Nothing`].
+    pub fn new(port: P, wrong: Defect) -> Self {
         let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
         let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
         let ticker = Ticker::new(&Board::NUCLEO_G474RE, pool, first);
@@ -109,7 +109,7 @@ impl<P: Port> LoopedRig<P> {
         &self.port
     }
 
-    fn is(&self, wrong: Wrong) -> bool {
+    fn is(&self, wrong: Defect) -> bool {
         self.wrong == wrong
     }
 
@@ -136,7 +136,7 @@ impl<P: Port> LoopedRig<P> {
     fn check_kick(&self) {
         assert!(self.said_unplugged, "a kick before the person has unplugged the amplifier");
         assert!(self.enable_was_found_low, "a kick before the wire was found with the enable low");
-        assert_eq!(self.wrong.inputs(self.progress()), wrong::LOW, "a kick");
+        assert_eq!(self.wrong.inputs(self.progress()), defect::LOW, "a kick");
         assert!(!self.ticks_run, "a kick under the tick");
     }
 
@@ -200,16 +200,16 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
 
     fn loop_mv(&mut self, driven_mv: u32) -> u32 {
         self.monitor_mv = match self.wrong {
-            Wrong::NoMonitorWire | Wrong::AdcDead => 0,
-            Wrong::AdcFrozen => Self::MONITOR_ZERO_MV,
-            Wrong::MonitorNotZero => driven_mv + 100,
+            Defect::NoMonitorWire | Defect::AdcDead => 0,
+            Defect::AdcFrozen => Self::MONITOR_ZERO_MV,
+            Defect::MonitorNotZero => driven_mv + 100,
             _ => driven_mv + 7,
         };
         self.monitor_mv
     }
 
     fn exchange(&mut self, bytes: &mut [u8]) -> bool {
-        if self.is(Wrong::NoDataWire) {
+        if self.is(Defect::NoDataWire) {
             bytes.fill(0xff);
         }
         true
@@ -218,9 +218,9 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     fn clocks(&mut self) -> Option<Clocks> {
         let whole = Clocks { before: 0, inside: 24, after: 0 };
         match self.wrong {
-            Wrong::Clocks23 => Some(Clocks { inside: 23, ..whole }),
-            Wrong::ClockAfterSync => Some(Clocks { inside: 23, after: 1, ..whole }),
-            Wrong::NoLatch => None,
+            Defect::Clocks23 => Some(Clocks { inside: 23, ..whole }),
+            Defect::ClockAfterSync => Some(Clocks { inside: 23, after: 1, ..whole }),
+            Defect::NoLatch => None,
             _ => Some(whole),
         }
     }
@@ -228,16 +228,18 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     fn latch_cycles(&mut self) -> Option<u32> {
         self.latch_moved = !self.latch_moved;
         match self.wrong {
-            Wrong::NoLatch => None,
-            Wrong::LatchLate => Some(Self::LATCH_CYCLES + 40),
-            Wrong::LatchMoves => Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved)),
-            Wrong::LatchMovesUnderTicks if self.ticks_run => Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved)),
+            Defect::NoLatch => None,
+            Defect::LatchLate => Some(Self::LATCH_CYCLES + 40),
+            Defect::LatchMoves => Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved)),
+            Defect::LatchMovesUnderTicks if self.ticks_run => {
+                Some(Self::LATCH_CYCLES + 6 * u32::from(self.latch_moved))
+            }
             _ => Some(Self::LATCH_CYCLES + 3),
         }
     }
 
     fn cycles(&mut self) -> u32 {
-        let is_refused = self.inputs() != wrong::LOW;
+        let is_refused = self.inputs() != defect::LOW;
         self.one_shot.pass(is_refused)
     }
 
@@ -275,11 +277,11 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
             let is_loaded = self.ticker.state() == State::Active;
             let cycles = match self.wrong {
                 _ if !is_loaded => IDLE_CYCLES,
-                Wrong::TicksSlow => SLOW_CYCLES,
+                Defect::TicksSlow => SLOW_CYCLES,
                 _ => LOADED_CYCLES,
             };
             self.meter.record(cycles);
-            if is_loaded && self.is(Wrong::TickLate) {
+            if is_loaded && self.is(Defect::TickLate) {
                 self.ticker.raise(Fault::Deadline, DEADLINE_CYCLES + 1);
             }
         }
@@ -297,7 +299,7 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     fn read(&mut self, bytes: &mut [u8]) -> usize {
         let len = self.port.read(bytes);
         self.received += len;
-        if self.is(Wrong::LineLoses) && self.received > 5_000 && len > 1 {
+        if self.is(Defect::LineLoses) && self.received > 5_000 && len > 1 {
             self.received = 0;
             // The last byte is lost.
             return len - 1;

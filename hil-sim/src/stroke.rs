@@ -8,7 +8,7 @@ mod sweep;
 
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
-use human::Hand;
+use human::Reconstruction;
 pub use human::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS};
 use rows::Rows;
 use straight::Straight;
@@ -136,7 +136,7 @@ impl Stroke {
         seed: u64,
     ) -> Result<Self, StrokeError> {
         let screen_m = [screen_width_m, screen_height_m];
-        let rows = human::rows(Hand::Smooth, screen_m, duration_s, median_speed_m_per_s, seed)?;
+        let rows = human::rows(Reconstruction::Smooth, screen_m, duration_s, median_speed_m_per_s, seed)?;
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 
@@ -150,7 +150,7 @@ impl Stroke {
         seed: u64,
     ) -> Result<Self, StrokeError> {
         let screen_m = [screen_width_m, screen_height_m];
-        let rows = human::rows(Hand::Rough, screen_m, duration_s, median_speed_m_per_s, seed)?;
+        let rows = human::rows(Reconstruction::Rough, screen_m, duration_s, median_speed_m_per_s, seed)?;
         Ok(Self::once(rows.end_s(), Path::Rows(rows)))
     }
 

@@ -112,7 +112,7 @@ struct Losses {
 
 /// Outcome of a report.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Fate {
+enum ReportOutcome {
     Arrives,
     WaitsForNext,
     Lost,
@@ -132,18 +132,18 @@ impl Losses {
     }
 
     /// Draws the outcome of a sample's report. The number of draws per sample is constant.
-    fn draw(&mut self, tick: u64) -> Fate {
+    fn draw(&mut self, tick: u64) -> ReportOutcome {
         let [lost, bunched, begins, length] = [(); 4].map(|()| self.random.uniform());
         let tick = tick as f64;
         if begins < self.pause_share && tick >= self.pause_until_tick {
             self.pause_until_tick = tick + length * self.pause_max_ticks;
         }
         if tick < self.pause_until_tick || lost < self.lost_share {
-            Fate::Lost
+            ReportOutcome::Lost
         } else if bunched < self.bunched_share {
-            Fate::WaitsForNext
+            ReportOutcome::WaitsForNext
         } else {
-            Fate::Arrives
+            ReportOutcome::Arrives
         }
     }
 }
@@ -266,10 +266,10 @@ impl TouchSource {
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
         match fate {
             // A lift is reported repeatedly until it arrives.
-            Fate::Arrives => self.send(tick + delay_ticks, touch),
+            ReportOutcome::Arrives => self.send(tick + delay_ticks, touch),
             _ if touch == Touch::Up => self.send(tick + delay_ticks, touch),
-            Fate::WaitsForNext => self.waiting = Some(touch),
-            Fate::Lost => {}
+            ReportOutcome::WaitsForNext => self.waiting = Some(touch),
+            ReportOutcome::Lost => {}
         }
     }
 

@@ -4,8 +4,8 @@
 use std::collections::VecDeque;
 
 use frixel_board::bring_up::DriveError;
-use frixel_board::self_test::{GREETING, LINE_TEST, Levels, LineTest, SKIP, Said, Stop, UNPLUGGED, Wire};
-use frixel_hil_sim::looped_board::{LoopedRig, Port, Wrong};
+use frixel_board::self_test::{GREETING, LINE_TEST, Levels, LineTest, SKIP, ScriptLine, Stop, UNPLUGGED, Wire};
+use frixel_hil_sim::looped_board::{Defect, LoopedRig, Port};
 use frixel_wire::fault::Fault;
 
 /// Ticks for which the host sends blocks: half a second.
@@ -55,9 +55,9 @@ impl Person {
     }
 
     fn measured(&self) -> Vec<(&str, u32, bool)> {
-        let said = self.said.lines().filter_map(Said::parse);
+        let said = self.said.lines().filter_map(ScriptLine::parse);
         said.filter_map(|said| match said {
-            Said::Measured(measurement) => Some((measurement.name, measurement.found, measurement.passes())),
+            ScriptLine::Measured(measurement) => Some((measurement.name, measurement.found, measurement.passes())),
             _ => None,
         })
         .collect()
@@ -108,18 +108,21 @@ impl Port for Person {
     fn end(&mut self) {}
 }
 
-fn self_test(wrong: Wrong, tests_line: bool) -> (Result<u32, Stop>, LoopedRig<Person>) {
+fn self_test(wrong: Defect, tests_line: bool) -> (Result<u32, Stop>, LoopedRig<Person>) {
     let mut rig = LoopedRig::new(Person::new(tests_line), wrong);
     (rig.run(), rig)
 }
 
 #[test]
 fn a_board_in_order_passes_and_its_last_line_says_so() {
-    let (result, rig) = self_test(Wrong::Nothing, true);
+    let (result, rig) = self_test(Defect::Nothing, true);
     let person = rig.port();
     assert_eq!(result, Ok(0), "{}", person.said);
     let measured = person.measured().len() as u32;
-    assert_eq!(Said::parse(person.said.trim_end().lines().last().unwrap()), Some(Said::End { measured, failed: 0 }));
+    assert_eq!(
+        ScriptLine::parse(person.said.trim_end().lines().last().unwrap()),
+        Some(ScriptLine::End { measured, failed: 0 })
+    );
     assert!(measured >= 20, "{}", person.said);
     let found = |name| person.measured().into_iter().find(|(known, ..)| *known == name).unwrap().1;
     // Half a second of blocks of 137 bytes, at 200,000 bytes a second.
@@ -132,7 +135,7 @@ fn a_board_in_order_passes_and_its_last_line_says_so() {
 
 #[test]
 fn a_person_skips_the_line() {
-    let (result, rig) = self_test(Wrong::Nothing, false);
+    let (result, rig) = self_test(Defect::Nothing, false);
     assert_eq!(result, Ok(0));
     assert!(!rig.port().said.contains("line_blocks"), "{}", rig.port().said);
 }
@@ -141,26 +144,26 @@ fn a_person_skips_the_line() {
 #[test]
 fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once() {
     for (wrong, stop) in [
-        (Wrong::ReadyHigh, Stop::Ready),
-        (Wrong::ReadyRises, Stop::Ready),
-        (Wrong::ReadyWhileEnabled, Stop::Ready),
-        (Wrong::ReadyUnderTicks, Stop::Ready),
-        (Wrong::SwitchClosed, Stop::Switch),
-        (Wrong::SwitchPressed, Stop::Switch),
-        (Wrong::SwitchPressedInPulse, Stop::Switch),
-        (Wrong::SwitchPressedInCutPulse, Stop::Switch),
-        (Wrong::SwitchPressedUnderTicks, Stop::Switch),
-        (Wrong::MonitorDriven, Stop::MonitorDriven(Levels::HIGH)),
-        (Wrong::MonitorNotZero, Stop::MonitorNotZero(1_750)),
-        (Wrong::NoDataWire, Stop::Data(11)),
-        (Wrong::NoClockWire, Stop::Missing(Wire::Clock)),
-        (Wrong::NoSyncWire, Stop::Missing(Wire::Sync)),
-        (Wrong::NoEnableWire, Stop::Missing(Wire::Enable)),
-        (Wrong::NoMonitorWire, Stop::MonitorNotZero(0)),
-        (Wrong::AdcDead, Stop::MonitorNotZero(0)),
-        (Wrong::EnableStuckHigh, Stop::Resting(Wire::Enable, Levels::HIGH)),
-        (Wrong::EnableStaysHigh, Stop::EnableStaysHigh),
-        (Wrong::TickLate, Stop::Drive(DriveError::Fault(Fault::Deadline, 3_701))),
+        (Defect::ReadyHigh, Stop::Ready),
+        (Defect::ReadyRises, Stop::Ready),
+        (Defect::ReadyWhileEnabled, Stop::Ready),
+        (Defect::ReadyUnderTicks, Stop::Ready),
+        (Defect::SwitchClosed, Stop::Switch),
+        (Defect::SwitchPressed, Stop::Switch),
+        (Defect::SwitchPressedInPulse, Stop::Switch),
+        (Defect::SwitchPressedInCutPulse, Stop::Switch),
+        (Defect::SwitchPressedUnderTicks, Stop::Switch),
+        (Defect::MonitorDriven, Stop::MonitorDriven(Levels::HIGH)),
+        (Defect::MonitorNotZero, Stop::MonitorNotZero(1_750)),
+        (Defect::NoDataWire, Stop::Data(11)),
+        (Defect::NoClockWire, Stop::Missing(Wire::Clock)),
+        (Defect::NoSyncWire, Stop::Missing(Wire::Sync)),
+        (Defect::NoEnableWire, Stop::Missing(Wire::Enable)),
+        (Defect::NoMonitorWire, Stop::MonitorNotZero(0)),
+        (Defect::AdcDead, Stop::MonitorNotZero(0)),
+        (Defect::EnableStuckHigh, Stop::Resting(Wire::Enable, Levels::HIGH)),
+        (Defect::EnableStaysHigh, Stop::EnableStaysHigh),
+        (Defect::TickLate, Stop::Drive(DriveError::Fault(Fault::Deadline, 3_701))),
     ] {
         let (result, rig) = self_test(wrong, true);
         assert_eq!(result, Err(stop), "{wrong:?}");
@@ -169,11 +172,11 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
         // A pulse where there must be none is caught by the simulated board, too.
         let comes_after_pulses = matches!(
             wrong,
-            Wrong::TickLate
-                | Wrong::EnableStaysHigh
-                | Wrong::SwitchPressedInCutPulse
-                | Wrong::ReadyUnderTicks
-                | Wrong::SwitchPressedUnderTicks
+            Defect::TickLate
+                | Defect::EnableStaysHigh
+                | Defect::SwitchPressedInCutPulse
+                | Defect::ReadyUnderTicks
+                | Defect::SwitchPressedUnderTicks
         );
         assert!(comes_after_pulses || !said.contains("enable_rises_us"), "{said}");
         assert!(rig.refused_us() <= REFUSED_MAX_US, "{wrong:?}: {} us", rig.refused_us());
@@ -184,18 +187,18 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
 #[test]
 fn each_wrong_measurement_fails_by_its_name() {
     for (wrong, names) in [
-        (Wrong::EnableDead, &["enable_rises_us", "enable_falls_us", "enable_is_cut_within_us"][..]),
-        (Wrong::OneShotLong, &["enable_falls_us"]),
-        (Wrong::NotRetriggered, &["enable_falls_between_kicks"]),
-        (Wrong::NotCut, &["enable_is_cut_within_us"]),
-        (Wrong::Clocks23, &["clocks_in_sync_at_least", "clocks_in_sync_at_most"]),
-        (Wrong::ClockAfterSync, &["clocks_in_sync_at_least", "clocks_in_sync_at_most", "clocks_after_sync_at_most"]),
-        (Wrong::LatchLate, &["latch_earliest_cycles", "latch_earliest_cycles_under_ticks"]),
-        (Wrong::LatchMoves, &["latch_spread_cycles", "latch_spread_cycles_under_ticks"]),
-        (Wrong::LatchMovesUnderTicks, &["latch_spread_cycles_under_ticks"]),
-        (Wrong::AdcFrozen, &["adc_at_300_mv", "adc_at_3000_mv"]),
-        (Wrong::TicksSlow, &["flash_wait_percent"]),
-        (Wrong::LineLoses, &["line_blocks_missing", "line_pieces_damaged"]),
+        (Defect::EnableDead, &["enable_rises_us", "enable_falls_us", "enable_is_cut_within_us"][..]),
+        (Defect::OneShotLong, &["enable_falls_us"]),
+        (Defect::NotRetriggered, &["enable_falls_between_kicks"]),
+        (Defect::NotCut, &["enable_is_cut_within_us"]),
+        (Defect::Clocks23, &["clocks_in_sync_at_least", "clocks_in_sync_at_most"]),
+        (Defect::ClockAfterSync, &["clocks_in_sync_at_least", "clocks_in_sync_at_most", "clocks_after_sync_at_most"]),
+        (Defect::LatchLate, &["latch_earliest_cycles", "latch_earliest_cycles_under_ticks"]),
+        (Defect::LatchMoves, &["latch_spread_cycles", "latch_spread_cycles_under_ticks"]),
+        (Defect::LatchMovesUnderTicks, &["latch_spread_cycles_under_ticks"]),
+        (Defect::AdcFrozen, &["adc_at_300_mv", "adc_at_3000_mv"]),
+        (Defect::TicksSlow, &["flash_wait_percent"]),
+        (Defect::LineLoses, &["line_blocks_missing", "line_pieces_damaged"]),
     ] {
         let (result, rig) = self_test(wrong, true);
         assert_eq!(rig.port().failed(), names, "{wrong:?}: {}", rig.port().said);
@@ -206,9 +209,9 @@ fn each_wrong_measurement_fails_by_its_name() {
 /// Every wrong board is in one of the tests above, or fails here.
 #[test]
 fn nothing_wrong_passes() {
-    for (name, wrong) in Wrong::ALL {
-        assert_eq!(Wrong::named(name), Some(*wrong));
-        if *wrong != Wrong::Nothing {
+    for (name, wrong) in Defect::ALL {
+        assert_eq!(Defect::named(name), Some(*wrong));
+        if *wrong != Defect::Nothing {
             let (result, _) = self_test(*wrong, true);
             assert_ne!(result, Ok(0), "{name}");
         }

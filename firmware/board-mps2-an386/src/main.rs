@@ -25,7 +25,7 @@ use cortex_m::Peripherals;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use frixel_board::fault::LastReset;
-use frixel_board::memory::{Made, Memory};
+use frixel_board::memory::{BoardParts, Memory};
 use frixel_board::start::Parts;
 use frixel_control::Board;
 use frixel_cortex_m::{Boot, guard, never};
@@ -62,7 +62,7 @@ fn main() -> ! {
 }
 
 /// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
-fn run(made: Made, boot: Boot, mut peripherals: Peripherals) -> ! {
+fn run(made: BoardParts, boot: Boot, mut peripherals: Peripherals) -> ! {
     let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { never() };
     let parts = Parts {
         period: Period::default(),

@@ -16,7 +16,7 @@ static POOL: BitmapPool = BitmapPool::new();
 static STREAM: StreamBuffer = StreamBuffer::new();
 
 /// Tick and session, and the ends of the queues between them.
-pub struct Made {
+pub struct BoardParts {
     /// Computes the voltage, in the tick.
     pub ticker: Ticker<'static>,
     /// The session with the host, in the main loop.
@@ -49,7 +49,7 @@ impl Memory {
 
     /// Creates the tick, the session and the queues between them, with the ends of each.
     #[inline(never)]
-    pub fn make(&'static mut self, board: Board) -> Made {
+    pub fn make(&'static mut self, board: Board) -> BoardParts {
         #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
         let mut ticker = Ticker::new(&board, &POOL, coefficients(&mut self.first));
         let session = session(&mut self.session, board, coefficients(&mut self.second));
@@ -59,7 +59,7 @@ impl Memory {
             session.attach_stream(&STREAM);
         }
         let (session_ends, tick_ends) = self.queues.split();
-        Made { ticker, session, session_ends, tick_ends }
+        BoardParts { ticker, session, session_ends, tick_ends }
     }
 }
 

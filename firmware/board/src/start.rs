@@ -21,7 +21,7 @@ use frixel_session::store::{CeilingPolicy, Flash, Slot, load_limits};
 use crate::fault::LastReset;
 use crate::hardware::{Dac, Hardware};
 use crate::main_loop::MainLoop;
-use crate::memory::Made;
+use crate::memory::BoardParts;
 use crate::tick::{Tick, TickShared};
 
 /// Location of the stored limits: the first pages of the flash for stores.
@@ -85,12 +85,12 @@ impl<H: Hardware> Parts<H> {
     #[inline]
     pub fn start(
         self,
-        made: Made,
+        made: BoardParts,
         shared: &'static TickShared,
         start_tick: impl FnOnce(Tick<H>),
         start_watchdog: impl FnOnce() -> H::Watchdog,
     ) -> MainLoop<H> {
-        let Made { ticker, session, session_ends, tick_ends } = made;
+        let BoardParts { ticker, session, session_ends, tick_ends } = made;
         #[cfg(feature = "telemetry")]
         session.attach_tick_meter(&shared.meter);
         let status = ticker.status();

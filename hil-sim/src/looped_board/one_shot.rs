@@ -2,7 +2,7 @@
 
 use frixel_board::self_test::Fall;
 
-use super::wrong::Wrong;
+use super::defect::Defect;
 
 /// Cycles per microsecond. Reading the time takes one.
 pub(super) const CYCLES_PER_US: u32 = 2;
@@ -47,24 +47,24 @@ impl OneShot {
         self.now
     }
 
-    pub(super) fn kick(&mut self, wrong: Wrong) {
-        if wrong == Wrong::EnableDead {
+    pub(super) fn kick(&mut self, wrong: Defect) {
+        if wrong == Defect::EnableDead {
             return;
         }
         if self.high_since.is_none() {
             self.rises_at = Some(self.now + EDGE_US * CYCLES_PER_US);
         }
-        let life_us = if wrong == Wrong::OneShotLong { LONG_US } else { ONE_SHOT_US };
+        let life_us = if wrong == Defect::OneShotLong { LONG_US } else { ONE_SHOT_US };
         let falls_at = Some(self.now + life_us * CYCLES_PER_US);
         self.falls_at = match wrong {
-            Wrong::EnableStaysHigh => None,
-            Wrong::NotRetriggered => self.falls_at.or(falls_at),
+            Defect::EnableStaysHigh => None,
+            Defect::NotRetriggered => self.falls_at.or(falls_at),
             _ => falls_at,
         };
     }
 
-    pub(super) fn disable(&mut self, wrong: Wrong) {
-        if self.falls_at.is_some() && wrong != Wrong::NotCut {
+    pub(super) fn disable(&mut self, wrong: Defect) {
+        if self.falls_at.is_some() && wrong != Defect::NotCut {
             self.falls_at = Some(self.now + EDGE_US * CYCLES_PER_US);
         }
     }

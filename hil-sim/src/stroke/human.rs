@@ -2,7 +2,7 @@
 //!
 //! A person lands, crosses a part of the screen, and lifts. The speed of a touch varies around a minimum-jerk profile,
 //! and the heading around its mean. Recorded strokes were reconstructed in two ways, which bracket the actual motion:
-//! [`Hand::Smooth`] and [`Hand::Rough`].
+//! [`Reconstruction::Smooth`] and [`Reconstruction::Rough`].
 
 use core::f64::consts::TAU;
 use core::ops::RangeInclusive;
@@ -46,7 +46,8 @@ const TURN_S: f64 = 0.2;
 const TURNS_AT: [f64; 2] = [0.3, 0.7];
 /// Band in which speed and heading vary, Hz (assumed).
 const WANDER_HZ: [f64; 2] = [1.0, 6.0];
-/// Additional band of [`Hand::Rough`], Hz: the uppermost below 8 Hz, where the acceleration needs the least speed.
+/// Additional band of [`Reconstruction::Rough`], Hz: the uppermost below 8 Hz, where the acceleration needs the least
+/// speed.
 const ROUGH_HZ: [f64; 2] = [5.0, 8.0];
 /// Physiological tremor: its band in Hz, and its amplitude in each axis in m rms (assumed).
 const TREMOR_HZ: [f64; 2] = [8.0, 12.0];
@@ -59,28 +60,28 @@ const BISECTIONS: u32 = 20;
 /// Dependence of a person's touches on their median speed. The numbers are fitted to the duration, acceleration below 8
 /// Hz and 95th percentile of speed of recorded strokes, which `tests.rs` states.
 #[derive(Clone, Copy, Debug)]
-struct Habits {
+struct TouchStatistics {
     median_m_per_s: f64,
     /// Median duration of a touch, s.
     duration_s: f64,
     /// Root mean square of the logarithm of speed around its rise and fall, and of the heading around its mean, in rad.
     wander: f64,
-    /// Addition of [`Hand::Rough`] to the velocity in each axis, rms, m/s.
+    /// Addition of [`Reconstruction::Rough`] to the velocity in each axis, rms, m/s.
     rough_m_per_s: f64,
 }
 
-const HABITS: [Habits; 4] = [
-    Habits { median_m_per_s: 0.05, duration_s: 1.03, wander: 0.36, rough_m_per_s: 0.02 },
-    Habits { median_m_per_s: 0.1, duration_s: 0.68, wander: 0.24, rough_m_per_s: 0.028 },
-    Habits { median_m_per_s: 0.2, duration_s: 0.80, wander: 0.20, rough_m_per_s: 0.122 },
-    Habits { median_m_per_s: 0.34, duration_s: 0.58, wander: 0.17, rough_m_per_s: 0.084 },
+const TOUCH_STATISTICS: [TouchStatistics; 4] = [
+    TouchStatistics { median_m_per_s: 0.05, duration_s: 1.03, wander: 0.36, rough_m_per_s: 0.02 },
+    TouchStatistics { median_m_per_s: 0.1, duration_s: 0.68, wander: 0.24, rough_m_per_s: 0.028 },
+    TouchStatistics { median_m_per_s: 0.2, duration_s: 0.80, wander: 0.20, rough_m_per_s: 0.122 },
+    TouchStatistics { median_m_per_s: 0.34, duration_s: 0.58, wander: 0.17, rough_m_per_s: 0.084 },
 ];
 
-impl Habits {
-    /// Habits at a median speed: interpolated over its logarithm between table entries, constant beyond.
+impl TouchStatistics {
+    /// Those of a median speed: interpolated over its logarithm between table entries, constant beyond.
     fn at(median_m_per_s: f64) -> Self {
-        let [first, .., last] = HABITS;
-        let pairs = HABITS.iter().zip(HABITS.iter().skip(1));
+        let [first, .., last] = TOUCH_STATISTICS;
+        let pairs = TOUCH_STATISTICS.iter().zip(TOUCH_STATISTICS.iter().skip(1));
         let mut between = pairs.filter(|(_, faster)| median_m_per_s < faster.median_m_per_s);
         let Some((slower, faster)) = between.next() else { return Self { median_m_per_s, ..last } };
         if median_m_per_s < first.median_m_per_s {
@@ -91,16 +92,16 @@ impl Habits {
         let mixed = |value: fn(&Self) -> f64| value(slower) + share * (value(faster) - value(slower));
         Self {
             median_m_per_s,
-            duration_s: mixed(|habits| habits.duration_s),
-            wander: mixed(|habits| habits.wander),
-            rough_m_per_s: mixed(|habits| habits.rough_m_per_s),
+            duration_s: mixed(|statistics| statistics.duration_s),
+            wander: mixed(|statistics| statistics.wander),
+            rough_m_per_s: mixed(|statistics| statistics.rough_m_per_s),
         }
     }
 }
 
-/// The reconstruction of recorded strokes that a hand matches.
+/// Which accelerations of recorded strokes a generated one has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Hand {
+pub(super) enum Reconstruction {
     /// Smoothed.
     Smooth,
     /// Including the noise of pixels and report times.
@@ -110,8 +111,8 @@ pub(super) enum Hand {
 /// The touches of one person on a screen.
 struct Person {
     random: Random,
-    hand: Hand,
-    habits: Habits,
+    reconstruction: Reconstruction,
+    statistics: TouchStatistics,
     /// Width and height of the screen within its margins, m.
     inner_m: [f64; 2],
     tremor: [Wave; 2],
@@ -120,7 +121,7 @@ struct Person {
 
 /// Rows of a seed's stroke, at the given median speed or, by default, that of the seed's person.
 pub(super) fn rows(
-    hand: Hand,
+    reconstruction: Reconstruction,
     [width_m, height_m]: [f64; 2],
     duration_s: f64,
     median_speed_m_per_s: Option<f64>,
@@ -141,7 +142,8 @@ pub(super) fn rows(
     }
     let tremor = [(); 2].map(|()| Wave::drawn(&mut random, TREMOR_HZ));
     let inner_m = screen_m.map(|side_m| (1.0 - 2.0 * MARGIN) * side_m);
-    let mut person = Person { random, hand, habits: Habits::at(found), inner_m, tremor, goes_right: true };
+    let mut person =
+        Person { random, reconstruction, statistics: TouchStatistics::at(found), inner_m, tremor, goes_right: true };
     let margin_m = screen_m.map(|side_m| MARGIN * side_m);
     Rows::new(&person.rows(margin_m, (duration_s / ROW_S) as usize)).ok_or_else(too_fast)
 }
@@ -177,15 +179,16 @@ impl Person {
 
     /// Places of the next touch, one every [`ROW_S`], within the margins.
     fn touch(&mut self) -> Vec<[f64; 2]> {
-        let median_m_per_s = self.habits.median_m_per_s * libm::exp(SPEED_SPREAD * self.random.gaussian());
-        let duration_s = self.habits.duration_s * libm::exp(DURATION_SPREAD * self.random.gaussian());
+        let median_m_per_s = self.statistics.median_m_per_s * libm::exp(SPEED_SPREAD * self.random.gaussian());
+        let duration_s = self.statistics.duration_s * libm::exp(DURATION_SPREAD * self.random.gaussian());
         let slope = self.within([-SLOPE_MAX, SLOPE_MAX]);
         let turns = self.random.uniform() < TURN_SHARE;
         let turn_s = self.within(TURNS_AT) * duration_s;
         let [speed, heading] = [(); 2].map(|()| Wave::drawn(&mut self.random, WANDER_HZ));
         let rough = [(); 2].map(|()| Wave::drawn(&mut self.random, ROUGH_HZ));
-        let rough_m_per_s = if self.hand == Hand::Rough { self.habits.rough_m_per_s } else { 0.0 };
-        let wander = self.habits.wander;
+        let rough_m_per_s =
+            if self.reconstruction == Reconstruction::Rough { self.statistics.rough_m_per_s } else { 0.0 };
+        let wander = self.statistics.wander;
         let velocities = (0..(duration_s / ROW_S) as usize).map(|index| {
             let t_s = ROW_S * index as f64;
             let direction = if turns { 1.0 - 2.0 * smooth_step((t_s - turn_s) / TURN_S + 0.5) } else { 1.0 };

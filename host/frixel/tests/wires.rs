@@ -11,11 +11,16 @@ use std::time::Duration;
 
 use frixel_board::self_test::{GREETING, Stop};
 use frixel_hil_sim::PseudoTerminal;
-use frixel_hil_sim::looped_board::{LoopedRig, TerminalPort, Wrong};
+use frixel_hil_sim::looped_board::{Defect, LoopedRig, TerminalPort};
 use serde_json::Value;
 
 /// Runs the command beside a board, and returns what the board's script returned.
-fn self_test(wrong: Wrong, seconds: u32, typed: &str, report: &str) -> (Output, thread::JoinHandle<Result<u32, Stop>>) {
+fn self_test(
+    wrong: Defect,
+    seconds: u32,
+    typed: &str,
+    report: &str,
+) -> (Output, thread::JoinHandle<Result<u32, Stop>>) {
     let port = TerminalPort::open().unwrap();
     let path = port.path().to_owned();
     let board = thread::spawn(move || LoopedRig::new(port, wrong).run());
@@ -47,7 +52,7 @@ fn a_board_in_order_passes_and_its_report_is_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let report = folder.path().join("report.json").display().to_string();
     // Typed wrong first: the board asks again.
-    let (output, board) = self_test(Wrong::Nothing, 1, "done\nunplugged\n", &report);
+    let (output, board) = self_test(Defect::Nothing, 1, "done\nunplugged\n", &report);
     assert!(output.status.success(), "{}", text(&output));
     assert_eq!(board.join().unwrap(), Ok(0));
     let report = read(&report);
@@ -74,9 +79,9 @@ fn a_board_in_order_passes_and_its_report_is_a_file() {
 fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
     let folder = tempfile::tempdir().unwrap();
     for (wrong, typed, said) in [
-        (Wrong::ReadyHigh, "", "unplug the amplifier"),
-        (Wrong::NoSyncWire, "unplugged\n", "the wire of SYNC is missing"),
-        (Wrong::LatchLate, "unplugged\n", "2 of the measurements"),
+        (Defect::ReadyHigh, "", "unplug the amplifier"),
+        (Defect::NoSyncWire, "unplugged\n", "the wire of SYNC is missing"),
+        (Defect::LatchLate, "unplugged\n", "2 of the measurements"),
     ] {
         let report = folder.path().join(format!("{wrong:?}.json")).display().to_string();
         let (output, board) = self_test(wrong, 0, typed, &report);
@@ -85,7 +90,7 @@ fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
         assert_ne!(board.join().unwrap(), Ok(0));
         let report = read(&report);
         assert_eq!(report["passed"], false);
-        assert_eq!(report["stopped"].is_null(), wrong == Wrong::LatchLate, "{report}");
+        assert_eq!(report["stopped"].is_null(), wrong == Defect::LatchLate, "{report}");
     }
 }
 
@@ -94,7 +99,7 @@ fn nobody_who_answers_and_a_board_with_another_program_are_said() {
     let folder = tempfile::tempdir().unwrap();
     let report = folder.path().join("report.json").display().to_string();
     // The board waits for an answer that never comes: its thread ends with this process.
-    let (output, _board) = self_test(Wrong::Nothing, 0, "", &report);
+    let (output, _board) = self_test(Defect::Nothing, 0, "", &report);
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output).contains("standard input ended"), "{}", text(&output));
 

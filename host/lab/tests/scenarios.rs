@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use frixel_hil_sim::{Board, BoardMemory, BoardRig, Felt, NoiseConfig, Rig, RigConfig, RigError, RigFault, RigTick};
 use frixel_lab::scenario::{ScenarioError, ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
-use frixel_scene::{Action, Cause, Expectation, LineDamage, Scenario, Scene, Seen};
+use frixel_scene::{Action, Cause, Condition, Expectation, LineDamage, Scenario, Scene};
 use frixel_wire::dac_code::DacCode;
 
 fn folder() -> PathBuf {
@@ -195,7 +195,7 @@ fn every_expectation_is_unmet_on_a_broken_rig() {
         for (number, expectation) in scenario.expectations.iter().enumerate() {
             let is_unmet =
                 outcomes.iter().any(|outcome| outcome.unmet.iter().any(|unmet| unmet.expectation == Some(number)));
-            assert!(is_unmet, "{}:{}: {:?}", scenario.file, expectation.line, expectation.seen);
+            assert!(is_unmet, "{}:{}: {:?}", scenario.file, expectation.line, expectation.condition);
         }
     }
 }
@@ -209,8 +209,8 @@ fn plays_and_stops() -> (Scenario, BTreeMap<String, Scene>) {
 fn a_driven_output_over_a_short_span_is_unmet_on_a_dead_board() {
     let (mut scenario, scenes) = plays_and_stops();
     let from_ms = 400.0;
-    let seen = Seen::OutputDriven;
-    scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms: Some(from_ms + 4.0), seen }];
+    let condition = Condition::OutputDriven;
+    scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms: Some(from_ms + 4.0), condition }];
     assert_eq!(run_on_simulator(&scenario, &scenes).unwrap().unmet, []);
     let unmet = run_broken(&scenario, &scenes, Break::Dead).unmet;
     assert_eq!(unmet.len(), 1);
@@ -250,7 +250,8 @@ fn a_span_without_a_tick_says_why() {
             "a driven output from 1100.000 ms on, and the scenario ends at 1000.000 ms: let it run for longer",
         ),
     ] {
-        scenario.expectations = vec![Expectation { line: 1, after: None, from_ms, to_ms, seen: Seen::OutputDriven }];
+        scenario.expectations =
+            vec![Expectation { line: 1, after: None, from_ms, to_ms, condition: Condition::OutputDriven }];
         let unmet = run_broken(&scenario, &scenes, how).unmet;
         let sentences: Vec<&str> = unmet.iter().map(|unmet| unmet.sentence.as_str()).collect();
         assert_eq!(sentences, [format!("expected {said}")]);

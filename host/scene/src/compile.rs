@@ -18,7 +18,7 @@ use super::played_finger::PlayedFinger;
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, ReachError, carrier};
-use super::springs::Springs;
+use super::springs::SpringFit;
 use super::tick_cost;
 use super::titles::{LayerNumber, LayerTitle};
 use super::voltage::Voltage;
@@ -113,7 +113,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     voltage.end_with_law(scene, log);
     voltage.limit_current(scene, limits, &carrier, if is_carrier_valid { &mut *log } else { &mut unreported });
     let effective_gap_um = effective_gap_um(scene, log);
-    let contact = Springs::of(scene.finger(), effective_gap_um * 1e-6, voltage.max_v_rms);
+    let contact = SpringFit::of(scene.finger(), effective_gap_um * 1e-6, voltage.max_v_rms);
     let springs = contact.map_err(|mistake| log.add(scene.profiles.place, mistake)).ok()?;
     let spring_mistake = springs.mistake();
     let are_springs_valid = spring_mistake.is_none();
@@ -283,7 +283,7 @@ fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
     })
 }
 
-fn header(scene: &Scene, voltage: &Voltage, springs: &Springs, effective_gap_um: f64, half_period_s: f64) -> Header {
+fn header(scene: &Scene, voltage: &Voltage, springs: &SpringFit, effective_gap_um: f64, half_period_s: f64) -> Header {
     let (screen, finger, drive) = (scene.screen(), scene.finger(), &scene.drive);
     let law = match &finger.elasticity {
         Elasticity::Empirical(law) => law.of_scene(),

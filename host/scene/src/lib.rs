@@ -102,7 +102,7 @@ pub use profile::{NamedProfile, Profile, ProfileError};
 pub use program::{Bitmap, Program};
 pub use reach::{ROUNDING, Reach, carrier};
 pub use scenario::{
-    Action, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke,
+    Action, Cause, Condition, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, StraightStroke,
 };
 pub use scene_profiles::ProfileSource;
 pub use schema::json_schema;

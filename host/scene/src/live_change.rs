@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::cover::{Excess, beyond, excesses};
 use super::digits::{digits, down, up};
 use super::program::Program;
-use super::reference::{Piece, Reference};
+use super::reference::{Reference, ReferenceLayer};
 use super::titles::{LayerTitle, listed};
 
 /// Largest number of places searched for an excess. Refusing a gain takes about forty searches, during which the host
@@ -104,7 +104,7 @@ impl Program {
         Some((least as f32, most as f32))
     }
 
-    fn worst_with(&self, pieces: &[Piece]) -> Option<Excess> {
+    fn worst_with(&self, pieces: &[ReferenceLayer]) -> Option<Excess> {
         let within = self.within_reach();
         let extent = |excess: &Excess| beyond(excess.found, within);
         let found = excesses(&self.header, pieces, within, PLACES_MAX).into_iter();
@@ -113,7 +113,7 @@ impl Program {
 }
 
 /// The layers with their settings.
-fn pieces(reference: &Reference, settings: &[LayerSetting]) -> Vec<Piece> {
+fn pieces(reference: &Reference, settings: &[LayerSetting]) -> Vec<ReferenceLayer> {
     let mut pieces = reference.pieces().to_vec();
     for (piece, setting) in pieces.iter_mut().zip(settings) {
         (piece.is_on, piece.gain) = (setting.on, f64::from(setting.gain));

@@ -20,17 +20,17 @@ const STEPS: u32 = 80;
 /// Range of the stiffness, Pa/m.
 const STIFFNESS_PA_PER_M: (f64, f64) = (1e3, 1e14);
 
-/// Springs for a finger.
+/// Springs fitted to a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Springs {
+pub(super) struct SpringFit {
     pub(super) stiffness_pa_per_m: f64,
     /// Largest deviation from the finger's friction, as a fraction of the reachable electric friction; zero if the
     /// finger has springs itself.
     pub(super) deviation: f64,
 }
 
-impl Springs {
-    /// Springs for a finger on an effective gap, at voltages up to the largest.
+impl SpringFit {
+    /// Fits springs to a finger on an effective gap, at voltages up to the largest.
     pub(super) fn of(profile: &FingerProfile, gap_m: f64, voltage_max_v_rms: f64) -> Result<Self, FitMistake> {
         match profile.elasticity {
             // The law takes their place.
@@ -60,7 +60,7 @@ impl Springs {
     }
 }
 
-fn fit(profile: &FingerProfile, finger: &SoftFinger<f64>, gap_m: f64, voltage_max_v_rms: f64) -> Option<Springs> {
+fn fit(profile: &FingerProfile, finger: &SoftFinger<f64>, gap_m: f64, voltage_max_v_rms: f64) -> Option<SpringFit> {
     let load_n = profile.normal_load_n;
     let soft = finger.on_gap(gap_m).ok()?.under_load(load_n).ok()?;
     let soft_n = |voltage_v_rms| soft.state(voltage_v_rms).ok().map(|state| state.electric_friction_n);
@@ -89,5 +89,5 @@ fn fit(profile: &FingerProfile, finger: &SoftFinger<f64>, gap_m: f64, voltage_ma
         let difference_n = springs.electric_friction_n(voltage_v_rms) - soft_n(voltage_v_rms)?;
         deviation = deviation.max(difference_n.abs() / reach_n);
     }
-    Some(Springs { stiffness_pa_per_m: least, deviation })
+    Some(SpringFit { stiffness_pa_per_m: least, deviation })
 }

@@ -9,7 +9,7 @@ use super::finger::{Elasticity, Evidence};
 use super::log::Log;
 use super::mistake::FitMistake;
 use super::reach::Reach;
-use super::springs::Springs;
+use super::springs::SpringFit;
 use super::warning::Warning;
 
 /// Ratio of the default peak limit to the peak needed by the rms limit. It is above 1, so that rounding never makes the
@@ -154,7 +154,7 @@ impl Voltage {
             let gap_m = f64::from(header.effective_gap_m);
             // A soft finger has other springs at another voltage.
             let springs =
-                Springs::of(scene.finger(), gap_m, v_rms).ok().filter(|springs| springs.mistake().is_none())?;
+                SpringFit::of(scene.finger(), gap_m, v_rms).ok().filter(|springs| springs.mistake().is_none())?;
             let stiffness_pa_per_m = springs.stiffness_pa_per_m as f32;
             let reach = Reach::of(&Header { voltage_max_v_rms: v_rms as f32, stiffness_pa_per_m, ..*header }).ok()?;
             Some(reach.electric_friction_max_n >= friction_n)

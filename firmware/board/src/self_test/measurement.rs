@@ -33,7 +33,7 @@ impl Measurement<'_> {
 
 /// Machine-readable content of a line of the script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Said<'n> {
+pub enum ScriptLine<'n> {
     /// The script begins: its version, and the kind of board.
     Begin(u32, &'n str),
     /// A measurement.
@@ -51,7 +51,7 @@ pub enum Said<'n> {
     Stopped(&'n str),
 }
 
-impl fmt::Display for Said<'_> {
+impl fmt::Display for ScriptLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Begin(version, board) => write!(f, "{BEGIN}{version}, of {board}"),
@@ -73,7 +73,7 @@ impl fmt::Display for Said<'_> {
     }
 }
 
-impl<'n> Said<'n> {
+impl<'n> ScriptLine<'n> {
     /// Parses a line; `None` for text meant for the person.
     pub fn parse(line: &'n str) -> Option<Self> {
         if let Some((version, board)) = line.strip_prefix(BEGIN).and_then(|rest| rest.split_once(", of ")) {
@@ -123,14 +123,14 @@ mod tests {
         let measured = |found| Measurement { name: "clocks", found, range: Some((24, 25)) };
         assert_eq!([23, 24, 25, 26].map(|found| measured(found).passes()), [false, true, true, false]);
         assert!(Measurement { range: None, ..measured(0) }.passes());
-        assert_eq!(Said::Measured(measured(23)).to_string(), "measured clocks 23 24..25 FAILED");
+        assert_eq!(ScriptLine::Measured(measured(23)).to_string(), "measured clocks 23 24..25 FAILED");
     }
 
     #[test]
     fn text_for_the_person_is_no_measurement() {
         for line in ["", "1. Connect the wires.", "measured", "measured it", "measured a b 0..1 ok", "histogram x 1 2"]
         {
-            assert_eq!(Said::parse(line), None, "{line}");
+            assert_eq!(ScriptLine::parse(line), None, "{line}");
         }
     }
 
@@ -143,20 +143,20 @@ mod tests {
             counts: [u32; TICK_TIME_CLASSES + 1],
         ) {
             for said in [
-                Said::Begin(found, &name),
-                Said::Stopped(&name),
-                Said::Measured(Measurement { name: &name, found, range }),
-                Said::Histogram(&name, counts),
-                Said::End { measured: found, failed: counts[0] },
+                ScriptLine::Begin(found, &name),
+                ScriptLine::Stopped(&name),
+                ScriptLine::Measured(Measurement { name: &name, found, range }),
+                ScriptLine::Histogram(&name, counts),
+                ScriptLine::End { measured: found, failed: counts[0] },
             ] {
                 let line = said.to_string();
-                prop_assert_eq!(Said::parse(&line), Some(said));
+                prop_assert_eq!(ScriptLine::parse(&line), Some(said));
             }
         }
 
         #[test]
         fn no_line_fails_the_reader(line in "(measured |histogram |end )?\\PC{0,80}") {
-            let _ = Said::parse(&line);
+            let _ = ScriptLine::parse(&line);
         }
     }
 }

@@ -26,7 +26,7 @@ use frixel_wire::message::TickTimes;
 
 pub use crate::bring_up::{Inputs, Line, LineReader, Typed};
 pub use line::LineTest;
-pub use measurement::{Measurement, Said};
+pub use measurement::{Measurement, ScriptLine};
 pub use script::{GREETING, LINE_TEST, SKIP, Stop, UNPLUGGED, run};
 
 /// Version of the printed lines, which changes with their form or meaning.

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::enable::measure_enable;
 use super::load::{Load, counted_since};
-use super::{Clocks, Inputs, Levels, LineTest, LoopedBoard, Measurement, Said, VERSION, Wire};
+use super::{Clocks, Inputs, Levels, LineTest, LoopedBoard, Measurement, ScriptLine, VERSION, Wire};
 use crate::bring_up::DriveError;
 
 /// The word typed first, which shows that the board receives.
@@ -126,7 +126,7 @@ impl Counts {
         let measurement = Measurement { name, found, range };
         self.measured += 1;
         self.failed += u32::from(!measurement.passes());
-        board.say(format_args!("{}", Said::Measured(measurement)));
+        board.say(format_args!("{}", ScriptLine::Measured(measurement)));
     }
 }
 
@@ -134,7 +134,7 @@ impl Counts {
 pub fn run(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
     let result = steps(board);
     if let Err(stop) = &result {
-        board.say(format_args!("{}{stop}.", Said::Stopped("")));
+        board.say(format_args!("{}{stop}.", ScriptLine::Stopped("")));
     }
     result
 }
@@ -154,7 +154,7 @@ fn steps(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
     measure_line(board, &mut load, &mut counts)?;
     load.rest(board)?;
     let Counts { measured, failed } = counts;
-    board.say(format_args!("{}", Said::End { measured, failed }));
+    board.say(format_args!("{}", ScriptLine::End { measured, failed }));
     Ok(failed)
 }
 
@@ -165,7 +165,7 @@ fn greet(board: &mut impl LoopedBoard) {
     board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
     confirm(board, format_args!("This begins the self-test."), GREETING);
     // Not earlier: output at the start is lost if no host has opened the port yet.
-    board.say(format_args!("{}{kind}", Said::Begin(VERSION, "")));
+    board.say(format_args!("{}{kind}", ScriptLine::Begin(VERSION, "")));
 }
 
 /// Shows an instruction until the person types `word`.
@@ -320,7 +320,7 @@ fn counting<B: LoopedBoard>(
     let before = board.tick_times();
     let worked = work(board, load);
     let counted = counted_since(&before, &board.tick_times());
-    board.say(format_args!("{}", Said::Histogram(histogram, counted.histogram)));
+    board.say(format_args!("{}", ScriptLine::Histogram(histogram, counted.histogram)));
     counts.say(board, late, counted.missed_deadlines, Some((0, 0)));
     counts.say(board, longest, counted.worst_cycles, Some((1, counted.deadline_cycles)));
     worked

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use frixel_board::bring_up::Drive;
 use frixel_board::main_loop::MainLoop;
-use frixel_board::memory::Made;
+use frixel_board::memory::BoardParts;
 use frixel_board::tick::TickShared;
 use frixel_session::Queues;
 use frixel_wire::fault::State;
@@ -34,7 +34,7 @@ impl Board {
         let shared: &TickShared = Box::leak(Box::new(TickShared::new::<Part>()));
         let (session, ticker) = firmware();
         let (session_ends, tick_ends) = Box::leak(Box::new(Queues::new())).split();
-        let made = Made { ticker, session: Box::leak(Box::new(session)), session_ends, tick_ends };
+        let made = BoardParts { ticker, session: Box::leak(Box::new(session)), session_ends, tick_ends };
         let main_loop = parts(&wires, shared).start(
             made,
             shared,

@@ -66,18 +66,18 @@ fn random_voltage_v_rms(random: &mut Random) -> f32 {
     random.pick([VOLTAGE_MAX_V_RMS, 0.0, between, between])
 }
 
-/// An envelope piece by piece: it holds, moves to another voltage at once or along a ramp, follows the carrier's clock,
+/// An envelope in segments: it holds, moves to another voltage at once or along a ramp, follows the carrier's clock,
 /// which is the worst for the integral, or the output is zero, as without a finger.
 struct Envelopes {
     random: Random,
     half_period_ticks: u32,
     left_ticks: u32,
-    piece: Piece,
+    segment: Segment,
     voltage_v_rms: f32,
 }
 
 #[derive(Clone, Copy)]
-enum Piece {
+enum Segment {
     Hold,
     Ramp { end_v_rms: f32, step_v: f32 },
     Resonant { voltages_v_rms: [f32; 2] },
@@ -91,16 +91,16 @@ impl Envelopes {
             self.begin_piece();
         }
         self.left_ticks -= 1;
-        match self.piece {
-            Piece::Hold => {}
-            Piece::Ramp { end_v_rms, step_v } => {
+        match self.segment {
+            Segment::Hold => {}
+            Segment::Ramp { end_v_rms, step_v } => {
                 self.voltage_v_rms += (end_v_rms - self.voltage_v_rms).clamp(-step_v, step_v);
             }
-            Piece::Resonant { voltages_v_rms } => {
+            Segment::Resonant { voltages_v_rms } => {
                 let half_period = self.left_ticks / self.half_period_ticks;
                 self.voltage_v_rms = voltages_v_rms[half_period as usize % 2];
             }
-            Piece::ZeroOutput => {
+            Segment::ZeroOutput => {
                 self.voltage_v_rms = 0.0;
                 return None;
             }
@@ -110,18 +110,18 @@ impl Envelopes {
 
     fn begin_piece(&mut self) {
         self.left_ticks = 1 + self.random.below(12 * self.half_period_ticks);
-        self.piece = match self.random.below(8) {
-            0 => Piece::ZeroOutput,
-            1 => Piece::Resonant {
+        self.segment = match self.random.below(8) {
+            0 => Segment::ZeroOutput,
+            1 => Segment::Resonant {
                 voltages_v_rms: [random_voltage_v_rms(&mut self.random), random_voltage_v_rms(&mut self.random)],
             },
-            2 | 3 => Piece::Ramp {
+            2 | 3 => Segment::Ramp {
                 end_v_rms: random_voltage_v_rms(&mut self.random),
                 step_v: self.random.pick([0.1, 1.0, 10.0, 50.0]),
             },
             _ => {
                 self.voltage_v_rms = random_voltage_v_rms(&mut self.random);
-                Piece::Hold
+                Segment::Hold
             }
         };
     }
@@ -145,7 +145,7 @@ fn check(waveform: Waveform, half_period_ticks: u32, lags: Lags, seed: u32) -> u
         random: Random::new(u64::from(seed)),
         half_period_ticks,
         left_ticks: 0,
-        piece: Piece::Hold,
+        segment: Segment::Hold,
         voltage_v_rms: 0.0,
     };
 

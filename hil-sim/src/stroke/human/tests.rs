@@ -50,8 +50,13 @@ const SEEDS: usize = 24;
 const SECONDS: f64 = 12.0;
 
 /// Touches of a seed: the finger at every millisecond. The last one may be cut.
-fn touches(hand: Hand, [width_m, height_m]: [f64; 2], median_m_per_s: Option<f64>, seed: u64) -> Vec<Vec<FingerState>> {
-    let make = if hand == Hand::Smooth { Stroke::human } else { Stroke::human_rough };
+fn touches(
+    reconstruction: Reconstruction,
+    [width_m, height_m]: [f64; 2],
+    median_m_per_s: Option<f64>,
+    seed: u64,
+) -> Vec<Vec<FingerState>> {
+    let make = if reconstruction == Reconstruction::Smooth { Stroke::human } else { Stroke::human_rough };
     let stroke = make(width_m, height_m, SECONDS, median_m_per_s, seed).unwrap();
     let fingers: Vec<Option<FingerState>> =
         (0..(1e3 * SECONDS) as u32).map(|ms| stroke.at(1e-3 * (f64::from(ms) + 0.5))).collect();
@@ -101,9 +106,9 @@ struct Found {
     acceleration_m_per_s2: f64,
 }
 
-fn found(hand: Hand, screen_m: [f64; 2], median_m_per_s: f64) -> Found {
+fn found(reconstruction: Reconstruction, screen_m: [f64; 2], median_m_per_s: f64) -> Found {
     let whole = |seed| {
-        let mut touches = touches(hand, screen_m, Some(median_m_per_s), seed);
+        let mut touches = touches(reconstruction, screen_m, Some(median_m_per_s), seed);
         touches.pop();
         touches
     };
@@ -120,12 +125,13 @@ fn found(hand: Hand, screen_m: [f64; 2], median_m_per_s: f64) -> Found {
 
 /// Checks the medians of touches against the recorded ones. The recordings have no quartiles of speed percentiles and
 /// durations, so a tolerance of a tenth of the recorded range is allowed.
-fn check(hand: Hand, screen_m: [f64; 2], recorded: &Recorded, whole_duration: bool) {
+fn check(reconstruction: Reconstruction, screen_m: [f64; 2], recorded: &Recorded, whole_duration: bool) {
     let Recorded { median_m_per_s, duration_s, fast_over_median: [least, most], .. } = *recorded;
-    let found = found(hand, screen_m, median_m_per_s);
-    let [lower, upper] = if hand == Hand::Smooth { recorded.smooth_m_per_s2 } else { recorded.rough_m_per_s2 };
+    let found = found(reconstruction, screen_m, median_m_per_s);
+    let [lower, upper] =
+        if reconstruction == Reconstruction::Smooth { recorded.smooth_m_per_s2 } else { recorded.rough_m_per_s2 };
     let line = format!(
-        "{hand:?} at {median_m_per_s} m/s: median {:.3}, {:.2} m/s^2, 95 % {:.2}, {:.2} s",
+        "{reconstruction:?} at {median_m_per_s} m/s: median {:.3}, {:.2} m/s^2, 95 % {:.2}, {:.2} s",
         found.median_m_per_s, found.acceleration_m_per_s2, found.fast_over_median, found.duration_s
     );
     println!("{line}");
@@ -138,9 +144,9 @@ fn check(hand: Hand, screen_m: [f64; 2], recorded: &Recorded, whole_duration: bo
 
 #[test]
 fn touches_have_the_statistics_of_recorded_ones() {
-    for hand in [Hand::Smooth, Hand::Rough] {
+    for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
         for recorded in &RECORDED {
-            check(hand, LARGE_M, recorded, true);
+            check(reconstruction, LARGE_M, recorded, true);
         }
     }
 }
@@ -148,17 +154,17 @@ fn touches_have_the_statistics_of_recorded_ones() {
 /// Only the touches at 200 mm/s and above are too long for it, and end earlier; they accelerate as much.
 #[test]
 fn touches_have_the_statistics_of_recorded_ones_on_a_small_screen() {
-    for hand in [Hand::Smooth, Hand::Rough] {
+    for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
         let [slow, middle, fast, _] = &RECORDED;
-        check(hand, SMALL_M, slow, true);
-        check(hand, SMALL_M, middle, true);
-        check(hand, SMALL_M, fast, false);
+        check(reconstruction, SMALL_M, slow, true);
+        check(reconstruction, SMALL_M, middle, true);
+        check(reconstruction, SMALL_M, fast, false);
     }
 }
 
 #[test]
 fn people_have_the_median_speeds_of_the_recorded_ones() {
-    let median = |seed| speed_quantile(&touches(Hand::Smooth, LARGE_M, None, seed).concat(), 0.5);
+    let median = |seed| speed_quantile(&touches(Reconstruction::Smooth, LARGE_M, None, seed).concat(), 0.5);
     let medians: Vec<f64> = HUMAN_TEST_SEEDS.take(60).map(median).collect();
     let (least, most) = medians.iter().fold((f64::MAX, 0.0_f64), |(a, b), median| (a.min(*median), b.max(*median)));
     assert!(least > 0.9 * 0.048 && least < 0.070, "{least}");
@@ -168,11 +174,11 @@ fn people_have_the_median_speeds_of_the_recorded_ones() {
 #[test]
 fn touches_land_and_lift_within_the_screen_and_few_turn() {
     let [width_m, height_m] = SMALL_M;
-    for hand in [Hand::Smooth, Hand::Rough] {
+    for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
         for median_m_per_s in [0.05, 0.1, 0.2, 0.4] {
             let touches: Vec<Vec<FingerState>> = HUMAN_TEST_SEEDS
                 .take(SEEDS)
-                .flat_map(|seed| touches(hand, SMALL_M, Some(median_m_per_s), seed))
+                .flat_map(|seed| touches(reconstruction, SMALL_M, Some(median_m_per_s), seed))
                 .collect();
             let mut states = touches.iter().flatten();
             assert!(states.all(|at| at.x_m > 0.0 && at.x_m < width_m && at.y_m > 0.0 && at.y_m < height_m));
@@ -188,8 +194,10 @@ fn touches_land_and_lift_within_the_screen_and_few_turn() {
         let (first, last) = (touch[0], touch[touch.len() - 1]);
         libm::hypot(last.x_m - first.x_m, last.y_m - first.y_m) < 0.7 * way_m
     };
-    let touches: Vec<Vec<FingerState>> =
-        HUMAN_TEST_SEEDS.take(SEEDS).flat_map(|seed| touches(Hand::Smooth, SMALL_M, Some(0.1), seed)).collect();
+    let touches: Vec<Vec<FingerState>> = HUMAN_TEST_SEEDS
+        .take(SEEDS)
+        .flat_map(|seed| touches(Reconstruction::Smooth, SMALL_M, Some(0.1), seed))
+        .collect();
     let share = touches.iter().filter(turned).count() as f64 / touches.len() as f64;
     assert!((0.03..0.15).contains(&share), "{share} of the touches turn");
 }
@@ -202,10 +210,14 @@ fn people_have_tremor_at_8_to_12_hz() {
     let mean_square = (0..30_000).map(|ms| wave.at(1e-3 * f64::from(ms)).powi(2)).sum::<f64>() / 30_000.0;
     assert!((mean_square - 1.0).abs() < 0.1, "{mean_square}");
     // At the slowest, the finger trembles more than it wanders.
-    let accelerations = |hand| acceleration_from_8_hz(&touches(hand, LARGE_M, Some(0.02), 1)[0]);
+    let accelerations = |reconstruction| acceleration_from_8_hz(&touches(reconstruction, LARGE_M, Some(0.02), 1)[0]);
     // 2 axes of 0.1 mm at about 10 Hz.
     let expected = 2.0_f64.sqrt() * TREMOR_RMS_M * (TAU * 10.0).powi(2);
-    assert!((accelerations(Hand::Smooth) / expected - 1.0).abs() < 0.4, "{}, {expected}", accelerations(Hand::Smooth));
+    assert!(
+        (accelerations(Reconstruction::Smooth) / expected - 1.0).abs() < 0.4,
+        "{}, {expected}",
+        accelerations(Reconstruction::Smooth)
+    );
 }
 
 fn acceleration_from_8_hz(touch: &[FingerState]) -> f64 {
@@ -220,8 +232,10 @@ fn acceleration_from_8_hz(touch: &[FingerState]) -> f64 {
 
 #[test]
 fn the_rough_hand_makes_the_touches_of_the_smooth_one() {
-    let durations = |hand| -> Vec<usize> { touches(hand, LARGE_M, Some(0.05), 5).iter().map(Vec::len).collect() };
-    assert_eq!(durations(Hand::Smooth), durations(Hand::Rough));
+    let durations = |reconstruction| -> Vec<usize> {
+        touches(reconstruction, LARGE_M, Some(0.05), 5).iter().map(Vec::len).collect()
+    };
+    assert_eq!(durations(Reconstruction::Smooth), durations(Reconstruction::Rough));
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub(super) struct Borders {
 
 /// A border of an element crossed by a finger, in either direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MetBorder {
+pub(super) struct CrossedBorder {
     /// The layer on the other side; absent for the bare screen.
     pub(super) from: Option<usize>,
     /// The felt part of the step onto the element.
@@ -55,7 +55,7 @@ impl Borders {
     }
 
     /// The most certainly perceived border in a run.
-    pub(super) fn met(&self, run: &[Moment], fingertip: &Fingertip) -> Option<MetBorder> {
+    pub(super) fn met(&self, run: &[Moment], fingertip: &Fingertip) -> Option<CrossedBorder> {
         let visible = |moment: &Moment| visible_layers(&self.reference, moment.context.x_m, moment.context.y_m);
         let visible: Vec<u64> = run.iter().map(visible).collect();
         let felt_n: Vec<f64> = run.iter().map(|moment| moment.felt_n).collect();
@@ -63,7 +63,7 @@ impl Borders {
         let scene_n: Vec<f64> = run.iter().map(|moment| moment.scene_n).collect();
         let same: Vec<&[u64]> = visible.chunk_by(|one, other| one == other).collect();
         let mut place = 0;
-        let mut found: Option<MetBorder> = None;
+        let mut found: Option<CrossedBorder> = None;
         for pair in same.windows(2) {
             let [before, after] = pair else { continue };
             place += before.len();
@@ -85,7 +85,7 @@ impl Borders {
         [before, after]: [Range<usize>; 2],
         is_onto: bool,
         [scene_n, felt_n]: [&[f64]; 2],
-    ) -> Option<MetBorder> {
+    ) -> Option<CrossedBorder> {
         let electric_n = |reference: &Reference, context: &Context| {
             total_n(&self.program, reference.electric_friction_at_n(context)) - self.program.reach.natural_friction_n
         };
@@ -106,7 +106,7 @@ impl Borders {
         let signal = before.map(|number| (number, low)).chain(after.map(|number| (number, high)));
         likeness.add(signal, scene_n, felt_n);
         let step = sums.felt_part([other_n, own_n], likeness.part_of_scene());
-        Some(MetBorder { from: own_layer(other_layers, own_layers), step })
+        Some(CrossedBorder { from: own_layer(other_layers, own_layers), step })
     }
 }
 

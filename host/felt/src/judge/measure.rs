@@ -12,7 +12,7 @@ use frixel_layers::{Direction, Interval, Layer};
 use frixel_scene::Program;
 use frixel_scene::reference::Reference;
 
-use super::border::{Borders, MetBorder};
+use super::border::{Borders, CrossedBorder};
 use super::fingertip::Fingertip;
 use super::likeness::Likeness;
 use super::moment::{Moment, context, electric_n, runs};
@@ -59,7 +59,7 @@ pub(super) struct Measured {
     /// The most noticeable texture.
     pub(super) texture: Option<Texture>,
     /// The most certainly perceived step onto the element.
-    pub(super) border: Option<MetBorder>,
+    pub(super) border: Option<CrossedBorder>,
     /// The initial step of its click.
     pub(super) click: Option<Click>,
     /// Mean felt friction on the element above natural friction, N.
@@ -118,7 +118,7 @@ impl<'e> Measure<'e> {
         let (mut uppermost, mut by_direction) = (Sums::default(), [Sums::default(); 2]);
         let mut touches: Vec<Touch> = Vec::new();
         let mut whole_n: Vec<f64> = Vec::new();
-        let (mut border, mut click): (Option<MetBorder>, Option<Click>) = (None, None);
+        let (mut border, mut click): (Option<CrossedBorder>, Option<Click>) = (None, None);
         for run in runs {
             let fingertip = Fingertip::of(run);
             border = surest(border, self.borders.met(run, &fingertip), |border| border.step);

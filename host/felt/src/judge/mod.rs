@@ -128,8 +128,10 @@ fn is_felt<E>(element: &Element, play: &mut Play<'_, E>) -> Result<bool, E> {
 pub fn verdict(element: &Element, felt: &[Vec<FidelitySample>]) -> LayerVerdict {
     let measure = Measure::new(element);
     let speeds = SPEEDS_M_PER_S.iter().zip(felt);
-    let mut plays: Vec<Played> = speeds
-        .filter_map(|(speed_m_per_s, samples)| Played::of(&measure, Some(*speed_m_per_s), &measure.runs(samples)))
+    let mut plays: Vec<PlayPerception> = speeds
+        .filter_map(|(speed_m_per_s, samples)| {
+            PlayPerception::of(&measure, Some(*speed_m_per_s), &measure.runs(samples))
+        })
         .collect();
     let over = element.over();
     if over == Over::Speed {
@@ -157,14 +159,14 @@ pub fn in_play(program: &Program, samples: &[FidelitySample], goes_on: GoesOn<'_
         if goes_on().is_break() {
             return None;
         }
-        let play = Played::of(&Measure::new(&element), None, &runs);
+        let play = PlayPerception::of(&Measure::new(&element), None, &runs);
         Some(of_plays(&element, element.over(), play.as_slice()))
     };
     elements.filter(|element| element.over() != Over::Speed).map(judged).collect()
 }
 
 /// The verdict on an element from the play in which it was perceived most certainly.
-fn of_plays(element: &Element, over: Over, plays: &[Played]) -> LayerVerdict {
+fn of_plays(element: &Element, over: Over, plays: &[PlayPerception]) -> LayerVerdict {
     if let Some(Layer::Stream(stream)) = element.record().map(|record| record.layer) {
         return of_stream(element, &stream);
     }
@@ -211,14 +213,14 @@ pub const FLAT_WEBER_STEPS: f64 = 0.1;
 
 /// Perception of an element in one play, with the actual and with an ideal display.
 #[derive(Clone, Copy)]
-struct Played {
+struct PlayPerception {
     /// Absent if the speed is not one of the three.
     speed_m_per_s: Option<f64>,
     felt: Measured,
     faultless: Measured,
 }
 
-impl Played {
+impl PlayPerception {
     /// Measures a play; `None` if the finger was never on the element.
     fn of(measure: &Measure, speed_m_per_s: Option<f64>, runs: &[Vec<Moment>]) -> Option<Self> {
         let faultless = measure.of(&moment::faultless(runs))?;
@@ -227,10 +229,10 @@ impl Played {
 }
 
 /// Sets the contrast of a speed-dependent layer to that between the slowest and the fastest play.
-fn over_speed(element: &Element, plays: &mut [Played]) {
+fn over_speed(element: &Element, plays: &mut [PlayPerception]) {
     let natural_n = element.program.reach.natural_friction_n;
-    let contrast = |measured: fn(&Played) -> Measured, plays: &[Played]| {
-        let mean_n = |play: &Played| natural_n + measured(play).mean_electric_n;
+    let contrast = |measured: fn(&PlayPerception) -> Measured, plays: &[PlayPerception]| {
+        let mean_n = |play: &PlayPerception| natural_n + measured(play).mean_electric_n;
         Some(Step::new(mean_n(plays.first()?), mean_n(plays.last()?)))
     };
     let felt = contrast(|play| play.felt, plays);

@@ -16,9 +16,9 @@ const REACH_OPACITY: f64 = 0.12;
 /// Heights of the friction and the voltage panel, in pixels.
 const HEIGHTS: (u32, u32) = (350, 240);
 const PLOT_WIDTH: f64 = 900.0;
-/// Width of a piece of the time axis, in pixels. Each piece is drawn either as a line or as an envelope.
+/// Width of a slice of the time axis, in pixels. Each slice is drawn either as a line or as an envelope.
 const PIECE: f64 = 6.0;
-/// A signal that changes direction this often within five pieces has periods shorter than five pixels, and is drawn as
+/// A signal that changes direction this often within five slices has periods shorter than five pixels, and is drawn as
 /// its envelope. A change of direction counts only when it is larger than this part of the axis.
 const TURNS_MAX: usize = 12;
 const TURN_MIN: f64 = 0.03;
@@ -163,7 +163,7 @@ struct Signal {
 
 /// A short interval of time, with the course of the signal in it.
 #[derive(Default)]
-struct Piece {
+struct Slice {
     /// Points of the line.
     line: Vec<(f64, f64)>,
     turns: usize,
@@ -180,7 +180,7 @@ impl Signal {
         let (start_s, end_s) = times(spans);
         let piece_s = (end_s - start_s) * PIECE / PLOT_WIDTH;
         for stretch in self.stretches(spans) {
-            for (fast, places) in runs(&self.pieces(&stretch, start_s, piece_s)) {
+            for (fast, places) in runs(&self.slices(&stretch, start_s, piece_s)) {
                 let (look, points) = if fast { (envelope, envelope_of(&places, piece_s)) } else { (look, places) };
                 panel.add(names[usize::from(fast)].take().unwrap_or_default(), look, points);
             }
@@ -214,47 +214,47 @@ impl Signal {
         stretches
     }
 
-    /// Cuts a line into pieces of equal duration, and counts the changes of direction in each.
-    fn pieces(&self, stretch: &[(f64, f64)], start_s: f64, piece_s: f64) -> Vec<Piece> {
+    /// Cuts a line into slices of equal duration, and counts the changes of direction in each.
+    fn slices(&self, stretch: &[(f64, f64)], start_s: f64, piece_s: f64) -> Vec<Slice> {
         let number = |time_s: f64| ((time_s - start_s) / piece_s) as usize;
         let first = stretch.first().map_or(0, |place| number(place.0));
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut slices: Vec<Slice> = Vec::new();
         // The value at the last change of direction, and the direction since then.
         let (mut turn, mut rises) = (stretch.first().map_or(0.0, |place| place.1), None);
         for &(time_s, value) in stretch {
             let place = number(time_s) - first;
-            pieces.resize_with(pieces.len().max(place + 1), Piece::default);
-            let Some(piece) = pieces.get_mut(place) else { continue };
-            piece.line.push((time_s, value));
+            slices.resize_with(slices.len().max(place + 1), Slice::default);
+            let Some(slice) = slices.get_mut(place) else { continue };
+            slice.line.push((time_s, value));
             let further = rises.is_some_and(|rises| (value > turn) == rises);
             if further {
                 turn = value;
             } else if (value - turn).abs() > TURN_MIN * self.range {
-                piece.turns += usize::from(rises.is_some());
+                slice.turns += usize::from(rises.is_some());
                 (turn, rises) = (value, Some(value > turn));
             }
         }
-        pieces
+        slices
     }
 }
 
-/// Joins consecutive pieces that are drawn in the same way. Each run states whether it is drawn as an envelope, and has
+/// Joins consecutive slices that are drawn in the same way. Each run states whether it is drawn as an envelope, and has
 /// the points, beginning at the end of the run before.
-fn runs(pieces: &[Piece]) -> Vec<(bool, Vec<(f64, f64)>)> {
+fn runs(slices: &[Slice]) -> Vec<(bool, Vec<(f64, f64)>)> {
     let turns = |place: usize| -> usize {
-        let near = pieces.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
-        near.map(|piece| piece.turns).sum()
+        let near = slices.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
+        near.map(|slice| slice.turns).sum()
     };
     let mut runs: Vec<(bool, Vec<(f64, f64)>)> = Vec::new();
-    for (place, piece) in pieces.iter().enumerate() {
+    for (place, slice) in slices.iter().enumerate() {
         let fast = turns(place) >= TURNS_MAX;
         match runs.last_mut() {
-            Some((last, places)) if *last == fast => places.extend(&piece.line),
+            Some((last, places)) if *last == fast => places.extend(&slice.line),
             Some((_, places)) => {
                 let joint = places.last().copied();
-                runs.push((fast, joint.into_iter().chain(piece.line.iter().copied()).collect()));
+                runs.push((fast, joint.into_iter().chain(slice.line.iter().copied()).collect()));
             }
-            None => runs.push((fast, piece.line.clone())),
+            None => runs.push((fast, slice.line.clone())),
         }
     }
     runs
@@ -267,10 +267,10 @@ fn envelope_of(places: &[(f64, f64)], piece_s: f64) -> Vec<(f64, f64)> {
     let mut rest = places;
     while let Some(&(start_s, _)) = rest.first() {
         let count = rest.iter().take_while(|(time_s, _)| *time_s < start_s + piece_s).count().max(1);
-        let (piece, later) = rest.split_at(count);
-        // Each piece has a point at its start and at its end, so that the envelope is continuous.
-        let end_s = later.first().or(piece.last()).map_or(start_s, |place| place.0);
-        let (least, largest) = piece.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), (_, value)| {
+        let (slice, later) = rest.split_at(count);
+        // Each slice has a point at its start and at its end, so that the envelope is continuous.
+        let end_s = later.first().or(slice.last()).map_or(start_s, |place| place.0);
+        let (least, largest) = slice.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), (_, value)| {
             (least.min(*value), largest.max(*value))
         });
         upper.extend([(start_s, largest), (end_s, largest)]);

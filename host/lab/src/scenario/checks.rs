@@ -3,11 +3,11 @@
 use std::fmt::Display;
 
 use frixel_hil_sim::RigTick;
-use frixel_scene::{Expectation, Program, Reach, Scenario, Seen, brief};
+use frixel_scene::{Condition, Expectation, Program, Reach, Scenario, brief};
 use frixel_wire::fault::{Fault, State};
 
 use super::host::Failure;
-use super::told::Told;
+use super::state_history::StateHistory;
 use super::{Unmet, ticks_of};
 
 /// Longest time without a code other than zero of an output that is driven, s.
@@ -134,7 +134,7 @@ impl Checks {
     }
 
     /// Each expectation that was not met, and each command that failed unexpectedly, by line.
-    pub(super) fn unmet(&self, told: &Told, mut failures: Vec<Failure>) -> Vec<Unmet> {
+    pub(super) fn unmet(&self, told: &StateHistory, mut failures: Vec<Failure>) -> Vec<Unmet> {
         let Self { checks, clock, scale, file, .. } = self;
         let mut unmet = Vec::new();
         for (number, check) in checks.iter().enumerate() {
@@ -158,7 +158,8 @@ impl Check {
     /// Sets the span, without the time in which a rig that is late may still show what was before, or already what
     /// comes. What is said may come later by that time.
     fn set_span(&mut self, [start, end]: [u64; 2], lateness_ticks: u64) {
-        let is_said = matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
+        let is_said =
+            matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
         self.span = Some(if is_said {
             [start, end.saturating_add(lateness_ticks)]
         } else {
@@ -170,24 +171,24 @@ impl Check {
         let (code, enable) = (tick.drive.dac_code.bits(), tick.drive.amplifier_enable);
         let found = &mut self.found;
         found.ticks += 1;
-        let is_wrong = match self.expectation.seen {
-            Seen::OutputZero => code != 0,
-            Seen::OutputOff => code != 0 || enable,
-            Seen::OutputDriven => {
+        let is_wrong = match self.expectation.condition {
+            Condition::OutputZero => code != 0,
+            Condition::OutputOff => code != 0 || enable,
+            Condition::OutputDriven => {
                 if code != 0 {
                     found.last_driven_tick = Some(tick.tick);
                 }
                 tick.tick - found.last_driven_tick.unwrap_or(start) > driven_within
             }
-            Seen::ElectrodeBelow(limit) => tick.felt.electrode_v.abs() >= limit * scale.voltage_max_v_peak,
-            Seen::Friction(_) => {
+            Condition::ElectrodeBelow(limit) => tick.felt.electrode_v.abs() >= limit * scale.voltage_max_v_peak,
+            Condition::Friction(_) => {
                 if tick.felt.finger.is_some() {
                     found.friction_sum_n += tick.felt.friction_n;
                     found.friction_ticks += 1;
                 }
                 false
             }
-            Seen::State(_) | Seen::Fault(_) | Seen::Error(_) => false,
+            Condition::State(_) | Condition::Fault(_) | Condition::Error(_) => false,
         };
         if is_wrong {
             found.wrong.get_or_insert((tick.tick, code, enable, tick.felt.electrode_v));
@@ -195,7 +196,7 @@ impl Check {
     }
 
     /// The sentence, if the expectation was not met. Marks failures that were expected.
-    fn unmet(&self, clock: Clock, scale: Scale, told: &Told, failures: &mut [Failure]) -> Option<String> {
+    fn unmet(&self, clock: Clock, scale: Scale, told: &StateHistory, failures: &mut [Failure]) -> Option<String> {
         let Some([start, end]) = self.span else {
             let after = self.expectation.after.as_deref().unwrap_or_default();
             return Some(format!("expected {}, and `{after}` never happened", self.expected()));
@@ -203,12 +204,13 @@ impl Check {
         let span = format!("from {:.3} to {:.3} ms", clock.ms(start), clock.ms(end));
         let expected = format!("expected {} {span}", self.expected());
         let Found { wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
-        let is_of_ticks = !matches!(self.expectation.seen, Seen::State(_) | Seen::Fault(_) | Seen::Error(_));
+        let is_of_ticks =
+            !matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
         if is_of_ticks && ticks == 0 {
             return Some(self.no_tick(clock, [start, end]));
         }
-        match &self.expectation.seen {
-            Seen::Friction([least, largest]) => {
+        match &self.expectation.condition {
+            Condition::Friction([least, largest]) => {
                 let mean = scale.friction_fraction(friction_sum_n / friction_ticks as f64);
                 if friction_ticks == 0 {
                     Some(format!("{expected}; found no finger on the screen"))
@@ -218,17 +220,17 @@ impl Check {
                     Some(format!("{expected}; found {mean:.3}"))
                 }
             }
-            Seen::State(state) => {
+            Condition::State(state) => {
                 let found = told.by(end);
                 (found.map(|(_, found, _)| found) != Some(*state))
                     .then(|| format!("{expected}; {}", said(clock, found)))
             }
-            Seen::Fault(fault) => {
+            Condition::Fault(fault) => {
                 let found = told.by(end);
                 (found.and_then(|(.., found)| found) != Some(*fault))
                     .then(|| format!("{expected}; {}", said(clock, found)))
             }
-            Seen::Error(words) => {
+            Condition::Error(words) => {
                 let is_it = |failure: &&mut Failure| {
                     (start..=end).contains(&failure.tick) && failure.sentence.contains(words.as_str())
                 };
@@ -236,10 +238,10 @@ impl Check {
                 (met == 0).then(|| format!("{expected}; {}", failed(clock, failures)))
             }
             // A span of less than 10 ms has no tick that is wrong by itself.
-            Seen::OutputDriven if wrong.is_none() && last_driven_tick.is_none() => {
+            Condition::OutputDriven if wrong.is_none() && last_driven_tick.is_none() => {
                 Some(format!("{expected}; found DAC code 0 in each of its {ticks} ticks"))
             }
-            Seen::OutputZero | Seen::OutputOff | Seen::OutputDriven | Seen::ElectrodeBelow(_) => {
+            Condition::OutputZero | Condition::OutputOff | Condition::OutputDriven | Condition::ElectrodeBelow(_) => {
                 let (tick, code, enable, electrode_v) = wrong?;
                 let enabled = if enable { "enabled" } else { "disabled" };
                 let at = clock.ms(tick);
@@ -276,17 +278,17 @@ impl Check {
 
     /// What is expected, in words.
     fn expected(&self) -> String {
-        match &self.expectation.seen {
-            Seen::OutputZero => "an output of zero".to_owned(),
-            Seen::OutputOff => "an output that is off".to_owned(),
-            Seen::OutputDriven => "a driven output".to_owned(),
-            Seen::ElectrodeBelow(limit) => format!("an electrode below {limit} of the scene's largest voltage"),
-            Seen::Friction([least, largest]) => {
+        match &self.expectation.condition {
+            Condition::OutputZero => "an output of zero".to_owned(),
+            Condition::OutputOff => "an output that is off".to_owned(),
+            Condition::OutputDriven => "a driven output".to_owned(),
+            Condition::ElectrodeBelow(limit) => format!("an electrode below {limit} of the scene's largest voltage"),
+            Condition::Friction([least, largest]) => {
                 format!("an electric friction of {least} to {largest} of the largest")
             }
-            Seen::State(state) => format!("the state \"{}\" to be said", without_advice(state)),
-            Seen::Fault(fault) => format!("\"{}\" to be said", without_advice(fault)),
-            Seen::Error(words) => format!("a failure with the words \"{}\"", brief(words)),
+            Condition::State(state) => format!("the state \"{}\" to be said", without_advice(state)),
+            Condition::Fault(fault) => format!("\"{}\" to be said", without_advice(fault)),
+            Condition::Error(words) => format!("a failure with the words \"{}\"", brief(words)),
         }
     }
 }

@@ -15,7 +15,7 @@ use frixel_wire::dac_code::DacCode;
 use super::checks::Checks;
 use super::direction::Direction;
 use super::host::Failure;
-use super::told::Told;
+use super::state_history::StateHistory;
 use super::{ScenarioError, ScenarioOutcome, TimelineEntry, ticks_of};
 
 /// The line to a rig. Clones are the same line: a host that connects again has another one.
@@ -45,7 +45,7 @@ struct Inner<'r> {
     /// Whether nobody sends: the host was killed.
     is_dead: bool,
     checks: Checks,
-    told: Told,
+    told: StateHistory,
     /// What happened, with its tick on the rig's clock.
     timeline: Vec<(u64, String)>,
     /// Why the rig has ended, with the line of the fault that it could not cause.
@@ -88,7 +88,7 @@ impl<'r> ScenarioLine<'r> {
             inbox: Vec::new(),
             is_dead: false,
             checks,
-            told: Told::default(),
+            told: StateHistory::default(),
             timeline: Vec::new(),
             error: None,
         };

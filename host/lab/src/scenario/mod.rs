@@ -10,7 +10,7 @@ mod checks;
 mod direction;
 mod host;
 mod line;
-mod told;
+mod state_history;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};

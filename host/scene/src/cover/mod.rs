@@ -16,7 +16,7 @@ pub(crate) use cell::Cell;
 use cell::Coverage;
 
 use crate::kinds::{Extremes, click_interval};
-use crate::reference::{Context, Piece};
+use crate::reference::{Context, ReferenceLayer};
 
 /// Width below which a cell is a rounding artefact, m.
 const CELL_MIN_M: f64 = 1e-6;
@@ -63,7 +63,12 @@ struct Suspect {
 
 /// Returns all sets of layers that exceed, or may exceed, `reach` on a scene's screen, each with the cell of its
 /// largest excess. Evaluates about `places_max` places at most, in coarser steps if a scene has more.
-pub(super) fn excesses(header: &Header, pieces: &[Piece], reach: Interval<f64>, places_max: usize) -> Vec<Excess> {
+pub(super) fn excesses(
+    header: &Header,
+    pieces: &[ReferenceLayer],
+    reach: Interval<f64>,
+    places_max: usize,
+) -> Vec<Excess> {
     let extent = |excess: &Excess| (beyond(excess.found, reach), beyond(excess.bound, reach));
     let mut worst: BTreeMap<Vec<usize>, Excess> = BTreeMap::new();
     for excess in excesses_of_cells(header, pieces, reach, places_max) {
@@ -75,12 +80,22 @@ pub(super) fn excesses(header: &Header, pieces: &[Piece], reach: Interval<f64>, 
 }
 
 /// An interval, widened to the friction that layers ask for anywhere on a scene's screen.
-pub(super) fn widened(interval: Interval<f64>, header: &Header, pieces: &[Piece], places_max: usize) -> Interval<f64> {
+pub(super) fn widened(
+    interval: Interval<f64>,
+    header: &Header,
+    pieces: &[ReferenceLayer],
+    places_max: usize,
+) -> Interval<f64> {
     let excesses = excesses_of_cells(header, pieces, interval, places_max);
     excesses.iter().fold(interval, |range, excess| range.hull(excess.found))
 }
 
-fn excesses_of_cells(header: &Header, pieces: &[Piece], reach: Interval<f64>, places_max: usize) -> Vec<Excess> {
+fn excesses_of_cells(
+    header: &Header,
+    pieces: &[ReferenceLayer],
+    reach: Interval<f64>,
+    places_max: usize,
+) -> Vec<Excess> {
     let (width_m, height_m) = (f64::from(header.screen_width_m), f64::from(header.screen_height_m));
     let bounds: Vec<[f64; 4]> = pieces.iter().map(|piece| piece.shape.bounds_m()).collect();
     let columns = edges(width_m, bounds.iter().flat_map(|[left_m, _, right_m, _]| [*left_m, *right_m]));
@@ -117,7 +132,7 @@ fn edges(screen_m: f64, layers: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 impl Stack {
-    fn of(pieces: &[Piece], cell: Cell) -> Self {
+    fn of(pieces: &[ReferenceLayer], cell: Cell) -> Self {
         let mut stack = Self { layers: Vec::new(), bound: ZERO, doubts: 0, outlined: false };
         for (number, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.is_on) {
             let coverage = Coverage::of(&piece.shape, cell);
@@ -142,7 +157,7 @@ impl Stack {
 }
 
 /// Number of places to evaluate across and down a cell without missing a detail of its layers.
-fn grid(pieces: &[Piece], stack: &Stack, cell: Cell) -> (f64, f64) {
+fn grid(pieces: &[ReferenceLayer], stack: &Stack, cell: Cell) -> (f64, f64) {
     let layers = stack.layers.iter().filter_map(|layer| pieces.get(*layer));
     let detail_m = layers.filter_map(|piece| piece.field.detail_m()).fold(f64::INFINITY, f64::min);
     let least = if stack.outlined { PLACES_PER_OUTLINE } else { 8.0 };
@@ -151,8 +166,8 @@ fn grid(pieces: &[Piece], stack: &Stack, cell: Cell) -> (f64, f64) {
 }
 
 /// Range of the friction on a grid of places in a cell.
-fn search(pieces: &[Piece], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interval<f64> {
-    let layers: Vec<&Piece> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
+fn search(pieces: &[ReferenceLayer], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interval<f64> {
+    let layers: Vec<&ReferenceLayer> = stack.layers.iter().filter_map(|layer| pieces.get(*layer)).collect();
     let [across, down] = grid.map(|places| places.round().max(1.0) as usize);
     let at = |start: f64, end: f64, place: usize, places: usize| {
         start + (end - start) * (place as f64 + 0.5) / places as f64
@@ -166,12 +181,12 @@ fn search(pieces: &[Piece], stack: &Stack, cell: Cell, grid: [f64; 2]) -> Interv
 }
 
 /// Range of the layers' combined target friction at a place, over all times and speeds.
-pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p Piece>, x_m: f64, y_m: f64) -> Interval<f64> {
+pub(super) fn interval_at<'p>(layers: impl Iterator<Item = &'p ReferenceLayer>, x_m: f64, y_m: f64) -> Interval<f64> {
     let covering = layers.filter(|piece| piece.shape.covers(x_m, y_m));
     covering.fold(ZERO, |below, piece| piece.over(below, piece.interval_at(x_m, y_m), true))
 }
 
-impl Piece {
+impl ReferenceLayer {
     /// Range of the layer's friction at a place, over all times and speeds, click included.
     fn interval_at(&self, x_m: f64, y_m: f64) -> Interval<f64> {
         if !self.field.is_still() {

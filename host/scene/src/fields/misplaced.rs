@@ -31,7 +31,7 @@ impl Misplaced {
 }
 
 /// A table and its fields.
-struct Home {
+struct OwningTable {
     key: &'static str,
     fields: Vec<&'static str>,
 }
@@ -49,17 +49,17 @@ const ABOVE_TABLES: [&str; 3] = ["finger", "screen", "include"];
 /// The tables that a field may belong to, in the order in which they are tried.
 const KEYS: [&str; 9] = ["region", "repeat", "burst", "drive", "finger", "screen", "carrier", "touch", "design"];
 
-static HOMES: LazyLock<Vec<Home>> = LazyLock::new(|| {
+static HOMES: LazyLock<Vec<OwningTable>> = LazyLock::new(|| {
     let tables = describe(TABLES);
     let fields = |key: &str| {
         let of_key = tables.iter().filter(|table| table.key == key);
         of_key.flat_map(|table| table.fields.iter().map(|known| known.field.name)).collect()
     };
-    KEYS.into_iter().map(|key| Home { key, fields: fields(key) }).collect()
+    KEYS.into_iter().map(|key| OwningTable { key, fields: fields(key) }).collect()
 });
 
 /// The name of a field in a table; its unit may be omitted.
-fn name_in(home: &Home, field: &str) -> Option<&'static str> {
+fn name_in(home: &OwningTable, field: &str) -> Option<&'static str> {
     let is_named = |name: &&&'static str| **name == field || name.strip_suffix("_mm") == Some(field);
     home.fields.iter().find(is_named).copied()
 }

@@ -7,7 +7,7 @@ use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as 
 
 use super::constant::ConstantField;
 use super::samples::Samples;
-use super::{Extremes, Field, IntoField, Lowered, Words};
+use super::{Extremes, Field, IntoField, LayerFields, Lowered};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -94,7 +94,7 @@ pub(crate) struct Bitmap {
     white: Amount,
 }
 
-impl Words for Bitmap {
+impl LayerFields for Bitmap {
     const WORD: &'static str = "bitmap";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

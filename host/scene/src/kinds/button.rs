@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
 
 use super::click::Click;
-use super::{Clicked, Extremes, Field, IntoField, Lowered, Words};
+use super::{Clicked, Extremes, Field, IntoField, LayerFields, Lowered};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake};
@@ -43,7 +43,7 @@ pub(crate) struct Button {
     click: Option<Click>,
 }
 
-impl Words for Button {
+impl LayerFields for Button {
     const WORD: &'static str = "button";
     const NEEDS_RIM: bool = true;
 

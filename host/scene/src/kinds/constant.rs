@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Constant as Record, Layer as RecordLayer, Region as RecordRegion};
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
 use crate::grammar::AmountFields;
@@ -24,7 +24,7 @@ pub(crate) struct Constant {
     friction: Amount,
 }
 
-impl Words for Constant {
+impl LayerFields for Constant {
     const WORD: &'static str = "constant";
     const TOTALS: bool = true;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Direction as Record, Layer as RecordLayer, Region as RecordRegion};
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake, Number};
 use crate::grammar::{AmountFields, FieldSpec};
@@ -33,7 +33,7 @@ pub(crate) struct Direction {
     against: Amount,
 }
 
-impl Words for Direction {
+impl LayerFields for Direction {
     const WORD: &'static str = "direction";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

@@ -8,7 +8,7 @@ use frixel_layers::{
 };
 
 use super::click::Click;
-use super::{Clicked, Extremes, Field, IntoField, Lowered, Words, click_interval};
+use super::{Clicked, Extremes, Field, IntoField, LayerFields, Lowered, click_interval};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -45,7 +45,7 @@ pub(crate) struct Edge {
     click: Option<Click>,
 }
 
-impl Words for Edge {
+impl LayerFields for Edge {
     const WORD: &'static str = "edge";
     /// By default an edge adds to the layers below, since most edges are ridges.
     const BLEND: Blend = Blend::Add;

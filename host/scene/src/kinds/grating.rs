@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, Lowered, Words, drift};
+use super::{Extremes, Field, IntoField, LayerFields, Lowered, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake, Number};
@@ -55,7 +55,7 @@ pub(crate) struct Grating {
     amounts: LowHigh,
 }
 
-impl Words for Grating {
+impl LayerFields for Grating {
     const WORD: &'static str = "grating";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

@@ -36,7 +36,7 @@ use crate::source::Places;
 pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM};
 
 /// The fields of a kind of layer, as written in a file.
-pub(crate) trait Words: Sized {
+pub(crate) trait LayerFields: Sized {
     /// The value of `kind`.
     const WORD: &'static str;
     /// The allowed blends.
@@ -204,10 +204,10 @@ macro_rules! kinds {
         }
 
         impl KindName {
-            pub(crate) const ALL: &[(&str, Self)] = &[$( (<$module::$kind as Words>::WORD, Self::$kind), )*];
+            pub(crate) const ALL: &[(&str, Self)] = &[$( (<$module::$kind as LayerFields>::WORD, Self::$kind), )*];
 
             pub(crate) fn word(self) -> &'static str {
-                match self { $( Self::$kind => <$module::$kind as Words>::WORD, )* }
+                match self { $( Self::$kind => <$module::$kind as LayerFields>::WORD, )* }
             }
 
             pub(crate) fn blends(self) -> (&'static [(&'static str, Blend)], Blend) {
@@ -223,44 +223,44 @@ macro_rules! kinds {
             }
 
             pub(crate) fn read(self, fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Kind> {
-                match self { $( Self::$kind => Words::read(fields, unit, log).map(Kind::$kind), )* }
+                match self { $( Self::$kind => LayerFields::read(fields, unit, log).map(Kind::$kind), )* }
             }
         }
 
         impl Kind {
             /// Whether a layer of this kind acts on the whole screen if it has no region.
             pub(crate) fn fills_screen(&self) -> bool {
-                match self { $( Self::$kind(kind) => Words::fills_screen(kind), )* }
+                match self { $( Self::$kind(kind) => LayerFields::fills_screen(kind), )* }
             }
 
             /// The value of `kind`.
             pub(crate) fn word(&self) -> &'static str {
-                match self { $( Self::$kind(_) => <$module::$kind as Words>::WORD, )* }
+                match self { $( Self::$kind(_) => <$module::$kind as LayerFields>::WORD, )* }
             }
 
             /// Reports mistakes between fields.
             pub(crate) fn check(&self, places: &Places, log: &mut Log) {
-                match self { $( Self::$kind(kind) => Words::check(kind, places, log), )* }
+                match self { $( Self::$kind(kind) => LayerFields::check(kind, places, log), )* }
             }
 
             /// Name of the field that sets the largest or the least friction of a record's layer.
             pub(crate) fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
-                match self { $( Self::$kind(kind) => Words::extreme(kind, most, places, record), )* }
+                match self { $( Self::$kind(kind) => LayerFields::extreme(kind, most, places, record), )* }
             }
 
             /// The fields that a click of the record's layer is added to; `None` without clicks.
             pub(crate) fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
-                match self { $( Self::$kind(kind) => Words::clicked(kind, places, record), )* }
+                match self { $( Self::$kind(kind) => LayerFields::clicked(kind, places, record), )* }
             }
 
             /// Moves the places in the kind's own fields.
             pub(crate) fn move_by(&mut self, x_mm: f64, y_mm: f64) {
-                match self { $( Self::$kind(kind) => Words::move_by(kind, x_mm, y_mm), )* }
+                match self { $( Self::$kind(kind) => LayerFields::move_by(kind, x_mm, y_mm), )* }
             }
 
             /// Compiles the layer to a record. Returns `None` after a mistake, which has been logged.
             pub(crate) fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
-                match self { $( Self::$kind(kind) => Words::lower(kind, layer, lowering), )* }
+                match self { $( Self::$kind(kind) => LayerFields::lower(kind, layer, lowering), )* }
             }
         }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake as Required, Number};
 use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
@@ -38,7 +38,7 @@ pub(crate) struct Noise {
     amounts: LowHigh,
 }
 
-impl Words for Noise {
+impl LayerFields for Noise {
     const WORD: &'static str = "noise";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, Lowered, Words, drift};
+use super::{Extremes, Field, IntoField, LayerFields, Lowered, drift};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
@@ -34,7 +34,7 @@ pub(crate) struct Rings {
     amounts: LowHigh,
 }
 
-impl Words for Rings {
+impl LayerFields for Rings {
     const WORD: &'static str = "rings";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

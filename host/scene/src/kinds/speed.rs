@@ -5,7 +5,7 @@ use std::sync::Arc;
 use frixel_layers::{Blend, Layer as RecordLayer, Point, Region as RecordRegion, Speed as Record, range};
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake as Required;
 use crate::grammar::{FieldSpec, Holds, Range};
@@ -40,7 +40,7 @@ pub(crate) struct Speed {
     factors: Vec<f64>,
 }
 
-impl Words for Speed {
+impl LayerFields for Speed {
     const WORD: &'static str = "speed";
     const BLENDS: &'static [(&'static str, Blend)] = &[("multiply", Blend::Multiply)];
     const BLEND: Blend = Blend::Multiply;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Spokes as Record, Wave};
 
 use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, Lowered, Words};
+use super::{Extremes, Field, IntoField, LayerFields, Lowered};
 use crate::cover::Cell;
 use crate::fields::Fields;
 use crate::grammar::Absence::{Mistake, Number};
@@ -44,7 +44,7 @@ pub(crate) struct Spokes {
     amounts: LowHigh,
 }
 
-impl Words for Spokes {
+impl LayerFields for Spokes {
     const WORD: &'static str = "spokes";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use frixel_layers::{Layer as RecordLayer, Region as RecordRegion, Stream as Record};
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake;
 use crate::grammar::AmountFields;
@@ -25,7 +25,7 @@ pub(crate) struct Stream {
     amounts: LowHigh,
 }
 
-impl Words for Stream {
+impl LayerFields for Stream {
     const WORD: &'static str = "stream";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

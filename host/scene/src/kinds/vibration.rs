@@ -7,7 +7,7 @@ use frixel_layers::{
     Beat, Burst as RecordBurst, Layer as RecordLayer, Region as RecordRegion, Vibration as Record, range,
 };
 
-use super::{Field, IntoField, Lowered, Words};
+use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::{Means, Mistake as Required, Number};
 use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
@@ -62,7 +62,7 @@ struct Burst {
     ramp_ms: f64,
 }
 
-impl Words for Vibration {
+impl LayerFields for Vibration {
     const WORD: &'static str = "vibration";
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {

@@ -20,12 +20,12 @@ use crate::kinds::{self, Field};
 #[derive(Clone, Debug)]
 pub struct Reference {
     natural_friction_n: f64,
-    pieces: Vec<Piece>,
+    pieces: Vec<ReferenceLayer>,
 }
 
 /// A record prepared for evaluation.
 #[derive(Clone, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct ReferenceLayer {
     pub(crate) shape: Shape,
     pub(crate) blend: Blend,
     pub(crate) gain: f64,
@@ -43,7 +43,7 @@ pub(crate) struct Piece {
 impl Reference {
     /// Prepares a program for evaluation, with all layers on.
     pub fn new(program: &Program) -> Self {
-        let pieces = program.records.iter().map(|record| Piece::new(record, program)).collect();
+        let pieces = program.records.iter().map(|record| ReferenceLayer::new(record, program)).collect();
         let natural_friction_n =
             f64::from(program.header.friction_coefficient) * f64::from(program.header.normal_load_n);
         Self { natural_friction_n, pieces }
@@ -132,11 +132,12 @@ impl Reference {
         &self,
         x_m: f64,
         y_m: f64,
-        is_on: impl Fn(usize, &Piece) -> bool,
-    ) -> impl DoubleEndedIterator<Item = (usize, &Piece)> {
-        let covers = move |piece: &Piece| piece.shape.covers(x_m, y_m);
+        is_on: impl Fn(usize, &ReferenceLayer) -> bool,
+    ) -> impl DoubleEndedIterator<Item = (usize, &ReferenceLayer)> {
+        let covers = move |piece: &ReferenceLayer| piece.shape.covers(x_m, y_m);
         let pieces = || self.pieces.iter().enumerate();
-        let hides = |(layer, piece): (usize, &Piece)| piece.hides_below() && is_on(layer, piece) && covers(piece);
+        let hides =
+            |(layer, piece): (usize, &ReferenceLayer)| piece.hides_below() && is_on(layer, piece) && covers(piece);
         pieces().skip(pieces().rposition(hides).unwrap_or(0)).filter(move |(_, piece)| covers(piece))
     }
 
@@ -157,12 +158,12 @@ impl Reference {
     }
 
     /// The layers from bottom to top.
-    pub(crate) fn pieces(&self) -> &[Piece] {
+    pub(crate) fn pieces(&self) -> &[ReferenceLayer] {
         &self.pieces
     }
 }
 
-impl Piece {
+impl ReferenceLayer {
     /// Whether the layer hides the layers below it.
     pub(crate) fn hides_below(&self) -> bool {
         self.blend == Blend::Replace && !self.is_streamed

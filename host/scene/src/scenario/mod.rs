@@ -201,12 +201,12 @@ pub struct Expectation {
     /// End of the interval, ms; `None` for the end of the scenario.
     pub to_ms: Option<f64>,
     /// The condition.
-    pub seen: Seen,
+    pub condition: Condition,
 }
 
 /// Condition of an expectation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Seen {
+pub enum Condition {
     /// DAC code is zero in every tick.
     OutputZero,
     /// DAC code is zero and the amplifier is disabled in every tick.

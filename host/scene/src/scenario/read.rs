@@ -6,7 +6,9 @@ use frixel_hil_sim::{NoiseConfig, RigFault, WorldFault};
 use frixel_wire::fault::{Fault, State};
 
 use super::tables::{command, expect, fault, file, stroke, when};
-use super::{Action, Cause, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, Seen, StraightStroke};
+use super::{
+    Action, Cause, Condition, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, StraightStroke,
+};
 use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
@@ -152,7 +154,7 @@ fn at_ms(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<f64
 
 /// Action of a command, before its fields are read.
 #[derive(Clone, Copy)]
-pub(super) enum Verb {
+pub(super) enum CommandWord {
     Plain(fn() -> Action),
     Replace,
     Trigger,
@@ -160,18 +162,18 @@ pub(super) enum Verb {
     Hang,
 }
 
-pub(super) const VERBS: [(&str, Verb); 11] = [
-    ("connect", Verb::Plain(|| Action::Connect)),
-    ("play", Verb::Plain(|| Action::Play)),
-    ("upload", Verb::Plain(|| Action::Upload)),
-    ("stop", Verb::Plain(|| Action::Stop)),
-    ("clear-fault", Verb::Plain(|| Action::ClearFault)),
-    ("replace", Verb::Replace),
-    ("trigger", Verb::Trigger),
-    ("layer", Verb::SetLayer),
-    ("hang", Verb::Hang),
-    ("die", Verb::Plain(|| Action::Die)),
-    ("other-client", Verb::Plain(|| Action::OtherClient)),
+pub(super) const COMMAND_WORDS: [(&str, CommandWord); 11] = [
+    ("connect", CommandWord::Plain(|| Action::Connect)),
+    ("play", CommandWord::Plain(|| Action::Play)),
+    ("upload", CommandWord::Plain(|| Action::Upload)),
+    ("stop", CommandWord::Plain(|| Action::Stop)),
+    ("clear-fault", CommandWord::Plain(|| Action::ClearFault)),
+    ("replace", CommandWord::Replace),
+    ("trigger", CommandWord::Trigger),
+    ("layer", CommandWord::SetLayer),
+    ("hang", CommandWord::Hang),
+    ("die", CommandWord::Plain(|| Action::Die)),
+    ("other-client", CommandWord::Plain(|| Action::OtherClient)),
 ];
 
 fn scenario_command(
@@ -183,18 +185,18 @@ fn scenario_command(
     let line = line_of(&fields, log);
     let at_ms = at_ms(&mut fields, seconds, log);
     let name = names.read(&mut fields, log);
-    let action = match fields.choice_or_nearest(log, &command::DO, &VERBS) {
-        Some(Verb::Plain(action)) => Some(action()),
-        Some(Verb::Replace) => fields.text(log, &command::SCENE).map(|scene| Action::Replace { scene }),
-        Some(Verb::Trigger) => {
+    let action = match fields.choice_or_nearest(log, &command::DO, &COMMAND_WORDS) {
+        Some(CommandWord::Plain(action)) => Some(action()),
+        Some(CommandWord::Replace) => fields.text(log, &command::SCENE).map(|scene| Action::Replace { scene }),
+        Some(CommandWord::Trigger) => {
             let duration_s = fields.number(log, &when::FOR_MS).map(|ms| 1e-3 * ms);
             fields.text(log, &command::LAYER).map(|layer| Action::Trigger { layer, duration_s })
         }
-        Some(Verb::SetLayer) => {
+        Some(CommandWord::SetLayer) => {
             let gain = fields.number(log, &command::GAIN);
             fields.text(log, &command::LAYER).map(|layer| Action::SetLayer { layer, gain })
         }
-        Some(Verb::Hang) => {
+        Some(CommandWord::Hang) => {
             fields.require(&when::FOR_MS);
             fields.number(log, &when::FOR_MS).map(|ms| Action::Hang { ms })
         }
@@ -308,23 +310,26 @@ fn expected(mut fields: Fields, names: &Names, log: &mut Log) -> Vec<Expectation
     }
     let outputs = [("zero", Output::Zero), ("off", Output::Off), ("driven", Output::Driven)];
     let output = fields.choice(log, &expect::OUTPUT, &outputs);
-    let seen = [
+    let conditions = [
         output.map(|output| match output {
-            Output::Zero => Seen::OutputZero,
-            Output::Off => Seen::OutputOff,
-            Output::Driven => Seen::OutputDriven,
+            Output::Zero => Condition::OutputZero,
+            Output::Off => Condition::OutputOff,
+            Output::Driven => Condition::OutputDriven,
         }),
-        fields.number(log, &expect::ELECTRODE_BELOW_FRACTION).map(Seen::ElectrodeBelow),
-        fields.interval(log, &expect::FRICTION_FRACTION).map(Seen::Friction),
-        fields.choice(log, &expect::STATE, &STATES).map(Seen::State),
-        fields.choice(log, &expect::FAULT, &FAULTS).map(Seen::Fault),
-        fields.text(log, &expect::ERROR).map(Seen::Error),
+        fields.number(log, &expect::ELECTRODE_BELOW_FRACTION).map(Condition::ElectrodeBelow),
+        fields.interval(log, &expect::FRICTION_FRACTION).map(Condition::Friction),
+        fields.choice(log, &expect::STATE, &STATES).map(Condition::State),
+        fields.choice(log, &expect::FAULT, &FAULTS).map(Condition::Fault),
+        fields.text(log, &expect::ERROR).map(Condition::Error),
     ];
     let place = fields.table_place();
     fields.close(log);
-    let seen: Vec<Seen> = seen.into_iter().flatten().collect();
-    if seen.is_empty() && log.mistakes() == before {
+    let conditions: Vec<Condition> = conditions.into_iter().flatten().collect();
+    if conditions.is_empty() && log.mistakes() == before {
         log.add(place, Mistake::NothingExpected);
     }
-    seen.into_iter().map(|seen| Expectation { line, after: after.clone(), from_ms, to_ms, seen }).collect()
+    conditions
+        .into_iter()
+        .map(|condition| Expectation { line, after: after.clone(), from_ms, to_ms, condition })
+        .collect()
 }

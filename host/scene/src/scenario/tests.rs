@@ -31,8 +31,11 @@ fn a_scenario_is_read_in_its_units() {
     assert_eq!(scenario.faults[0].cause, Cause::Line { directions: [true, false], damage });
     assert_eq!(scenario.faults[2].cause, Cause::Rig(RigFault::World(WorldFault::AmplifierGain(0.5))));
     assert_eq!(scenario.faults[3].cause, Cause::DacStuck { fraction: 0.4 });
-    let seen: Vec<&Seen> = scenario.expectations.iter().map(|expectation| &expectation.seen).collect();
-    assert_eq!(seen, [&Seen::OutputDriven, &Seen::Friction([0.4, 0.6]), &Seen::State(State::Active)]);
+    let conditions: Vec<&Condition> = scenario.expectations.iter().map(|expectation| &expectation.condition).collect();
+    assert_eq!(
+        conditions,
+        [&Condition::OutputDriven, &Condition::Friction([0.4, 0.6]), &Condition::State(State::Active)]
+    );
     assert_eq!((scenario.expectations[0].from_ms, scenario.expectations[0].to_ms), (1.0, Some(9.0)));
 }
 
@@ -82,7 +85,7 @@ fn the_documentation_has_every_word() {
     let docs = std::fs::read_to_string(file).unwrap();
     let fields = [tables::file::ALL, tables::stroke::ALL, tables::when::ALL, tables::command::ALL, tables::fault::ALL];
     let fields = fields.concat().into_iter().chain(tables::expect::ALL.iter().copied()).map(|field| field.name);
-    for word in fields.chain(read::VERBS.map(|(word, _)| word)).chain(read::KINDS.map(|(word, _)| word)) {
+    for word in fields.chain(read::COMMAND_WORDS.map(|(word, _)| word)).chain(read::KINDS.map(|(word, _)| word)) {
         assert!(docs.contains(&format!("`{word}`")) || docs.contains(&format!("`[[{word}]]`")), "{word}");
     }
     for word in read::STATES.map(|(word, _)| word).into_iter().chain(read::FAULTS.map(|(word, _)| word)) {

@@ -14,7 +14,7 @@ use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
 use super::control::Control;
-use super::live_scene::{Fate, LiveScene};
+use super::live_scene::{LiveScene, ReplaceOutcome};
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
@@ -161,12 +161,12 @@ impl<L: RecordedLink> Play<'_, L> {
         let refreshed = live_scene.refresh(&mut self.player);
         let Some((files, fate)) = refreshed.map_err(|error| self.error(error))? else { return Ok(()) };
         let t_s = self.player.recorder_mut().t_s();
-        self.outputs.keep_scene(t_s, &files, fate == Fate::Refused);
+        self.outputs.keep_scene(t_s, &files, fate == ReplaceOutcome::Refused);
         self.scenes_put += 1;
         if let Some(control) = &mut self.control {
             control.keep_replace(self.scenes_put);
         }
-        if let Some(playing) = self.player.playing().filter(|_| fate == Fate::Plays) {
+        if let Some(playing) = self.player.playing().filter(|_| fate == ReplaceOutcome::Plays) {
             self.outputs.replace(t_s, playing.program());
             self.refusals.extend(sentences(playing.program()));
             self.plan.program = playing.program().clone();

@@ -45,7 +45,7 @@ enum Origin {
 
 /// What became of a scene that was put on the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum ReplaceOutcome {
     Plays,
     /// The board refused it, and the scene before plays on.
     Refused,
@@ -93,7 +93,7 @@ impl LiveScene {
     pub(super) fn refresh<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
-    ) -> Result<Option<(SceneFiles, Fate)>, PlayError> {
+    ) -> Result<Option<(SceneFiles, ReplaceOutcome)>, PlayError> {
         // In virtual time, the play waits for the compiler.
         let waits = self.loader.target == Target::Simulator;
         if let Some(next) = self.next.take_if(|next| waits || next.compiling.is_finished()) {
@@ -112,10 +112,10 @@ impl LiveScene {
         origin: Origin,
         Compiled { program, files }: Compiled,
         player: &mut Player<L>,
-    ) -> Result<Option<(SceneFiles, Fate)>, PlayError> {
+    ) -> Result<Option<(SceneFiles, ReplaceOutcome)>, PlayError> {
         let how = if origin == Origin::Saved { " as it was saved" } else { "" };
         let fate = replace(files.path(), how, program, player)?;
-        if origin == Origin::Saved || fate == Some(Fate::Plays) {
+        if origin == Origin::Saved || fate == Some(ReplaceOutcome::Plays) {
             self.files = files.clone();
         }
         Ok(fate.map(|fate| (files, fate)))
@@ -149,7 +149,7 @@ fn replace<L: RecordedLink>(
     how: &str,
     compiled: Result<Program>,
     player: &mut Player<L>,
-) -> Result<Option<Fate>, PlayError> {
+) -> Result<Option<ReplaceOutcome>, PlayError> {
     let board = player.device().hello().board;
     let checked = compiled.and_then(|program| check_measured(&program, board).map(|()| program));
     let program = match checked {
@@ -168,7 +168,7 @@ fn replace<L: RecordedLink>(
         ),
         Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
-            return Ok(Some(Fate::Refused));
+            return Ok(Some(ReplaceOutcome::Refused));
         }
         Err(error) => return Err(error),
     };
@@ -180,7 +180,7 @@ fn replace<L: RecordedLink>(
     if let Some(clamped) = dropped_gains {
         note(format_args!("frixel: its gains are those of the file: with those that were set, {clamped}"));
     }
-    Ok(Some(Fate::Plays))
+    Ok(Some(ReplaceOutcome::Plays))
 }
 
 #[cfg(test)]

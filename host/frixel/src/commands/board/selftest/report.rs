@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use chrono::Utc;
-use frixel_board::self_test::{LineTest, Measurement, Said};
+use frixel_board::self_test::{LineTest, Measurement, ScriptLine};
 use serde::Serialize;
 
 /// What the file is, and the version of its form.
@@ -70,19 +70,19 @@ impl Report {
     /// Takes a line of the board.
     pub(super) fn take(&mut self, line: &str) {
         self.said.push(line.to_owned());
-        match Said::parse(line) {
+        match ScriptLine::parse(line) {
             None => {}
-            Some(Said::Begin(version, board)) => {
+            Some(ScriptLine::Begin(version, board)) => {
                 self.script_version = version;
                 board.clone_into(&mut self.board);
             }
-            Some(Said::Measured(measurement)) => self.measure(&measurement),
-            Some(Said::Histogram(name, counts)) => _ = self.ticks.insert(name.to_owned(), counts.to_vec()),
-            Some(Said::Stopped(reason)) => {
+            Some(ScriptLine::Measured(measurement)) => self.measure(&measurement),
+            Some(ScriptLine::Histogram(name, counts)) => _ = self.ticks.insert(name.to_owned(), counts.to_vec()),
+            Some(ScriptLine::Stopped(reason)) => {
                 self.stopped = Some(reason.to_owned());
                 self.has_ended = true;
             }
-            Some(Said::End { .. }) => {
+            Some(ScriptLine::End { .. }) => {
                 self.has_ended = true;
                 self.passed = self.failed() == 0;
             }
@@ -96,7 +96,7 @@ impl Report {
             Measurement { name: "host_blocks_missing", found: line.missing(), range: Some((0, 0)) },
             Measurement { name: "host_pieces_damaged", found: line.damaged(), range: Some((0, 0)) },
         ] {
-            self.of_line.push(Said::Measured(measurement).to_string());
+            self.of_line.push(ScriptLine::Measured(measurement).to_string());
             self.measure(&measurement);
         }
     }

@@ -7,12 +7,12 @@ use frixel_wire::payload::Payload;
 
 /// State and fault of a board, each time that it has said something else than before.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct StateHistory {
     decoder: Decoder,
     history: Vec<(u64, State, Option<Fault>)>,
 }
 
-impl Told {
+impl StateHistory {
     /// Takes bytes that have arrived at the host at a tick.
     pub(super) fn hear(&mut self, bytes: &[u8], tick: u64) {
         let mut input = bytes;

@@ -2,23 +2,23 @@
 
 use frixel_board::self_test::{Inputs, Levels, Wire};
 
-/// Declares [`Wrong`] with its names, so that [`Wrong::ALL`] is complete.
-macro_rules! wrongs {
+/// Declares [`Defect`] with its names, so that [`Defect::ALL`] is complete.
+macro_rules! defects {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
         /// A defect of a board or its wires.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Wrong {
+        pub enum Defect {
             $($(#[doc = $doc])+ $variant,)+
         }
 
-        impl Wrong {
+        impl Defect {
             /// All defects, with their names.
             pub const ALL: &[(&str, Self)] = &[$(($name, Self::$variant)),+];
         }
     };
 }
 
-wrongs! {
+defects! {
     /// No defect.
     Nothing = "nothing",
     /// The amplifier is plugged in, and its ready is high.
@@ -107,7 +107,7 @@ pub(super) enum Progress {
 /// Inputs with nothing connected to them.
 pub(super) const LOW: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
 
-impl Wrong {
+impl Defect {
     /// The defect of a name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, wrong)| *wrong)
