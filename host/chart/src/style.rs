@@ -1,6 +1,7 @@
 //! The style of charts: sizes, colours, lines, marks and fonts.
 
-use std::sync::OnceLock;
+use std::array;
+use std::sync::{LazyLock, OnceLock};
 
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -42,6 +43,9 @@ pub const PALETTE: [RGBColor; 7] = [
     RGBColor(0x33, 0x33, 0x33),
 ];
 const UNKNOWN: RGBColor = RGBColor(128, 128, 128);
+/// The colours of the colour scale.
+static COLOURS: LazyLock<[RGBColor; COLOUR_STEPS as usize + 1]> =
+    LazyLock::new(|| array::from_fn(|step| ViridisRGB.get_color(step as f64 / COLOUR_STEPS)));
 
 /// The colour at `part` of the colour scale, from 0 to 1. Values outside take the colour of the nearer end, and
 /// not-a-number is grey.
@@ -49,7 +53,8 @@ pub fn colour(part: f64) -> RGBColor {
     if part.is_nan() {
         return UNKNOWN;
     }
-    ViridisRGB.get_color((part.clamp(0.0, 1.0) * COLOUR_STEPS).round() / COLOUR_STEPS)
+    let step = (part.clamp(0.0, 1.0) * COLOUR_STEPS).round() as usize;
+    COLOURS.get(step).copied().unwrap_or(UNKNOWN)
 }
 
 /// The style of a series.

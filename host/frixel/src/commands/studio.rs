@@ -15,6 +15,8 @@ use crate::input;
 
 use super::terminal::{note, print_line};
 
+/// The page beside the command, in the folder that `cargo xtask dist` makes.
+const PAGE_BESIDE: &str = "frixel-studio.html";
 /// The page in the folder of build artefacts.
 const BUILT_PAGE: &str = "studio/frixel-studio.html";
 /// That folder in a checkout, unless `CARGO_TARGET_DIR` names another.
@@ -22,8 +24,8 @@ const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 /// There is no page, and no checkout that could have one.
-const NO_PAGE: &str =
-    "no page is given, and this folder is in no checkout of frixel, which could build one: give --page FILE.html";
+const NO_PAGE: &str = "there is no frixel-studio.html beside this command, and this folder is in no checkout of frixel, \
+                       which could build one: give --page FILE.html";
 /// Folders of a checkout that the page is made from.
 const SOURCES: [&str; 11] = [
     "firmware",
@@ -43,7 +45,7 @@ const NO_SOURCES: [&str; 2] = ["target", "node_modules"];
 
 #[derive(Debug, Args)]
 pub(super) struct StudioArgs {
-    /// The page, as `cargo xtask studio` builds it. Without it, that of the checkout around the current folder.
+    /// The page, as `cargo xtask studio` builds it. Default: frixel-studio.html beside this command, or that of the checkout.
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
     /// Print the page's path, and do not open the browser.
@@ -65,13 +67,18 @@ pub(super) fn run(args: &StudioArgs) -> Result<()> {
     Ok(())
 }
 
-/// The absolute path of the page that was given, or of the one that the checkout around the current folder has built.
+/// The absolute path of the page that was given, that lies beside the command, or that the checkout around the current
+/// folder has built.
 fn page(args: &StudioArgs) -> Result<PathBuf> {
     if args.port.is_some() {
         bail!("choose the port in the page, in Chromium or Firefox: leave out --port");
     }
     let page = if let Some(page) = &args.page {
         page.clone()
+    } else if let Some(page) =
+        env::current_exe().and_then(fs::canonicalize).ok().and_then(|program| page_beside(&program))
+    {
+        page
     } else {
         page_of_checkout(&env::current_dir().context(NO_PAGE)?, env::var_os("CARGO_TARGET_DIR"))?
     };
@@ -80,6 +87,11 @@ fn page(args: &StudioArgs) -> Result<PathBuf> {
     path.map_err(|error| {
         anyhow!("{page} cannot be read ({error}): give --page the file that `cargo xtask studio` prints")
     })
+}
+
+/// The page in the folder of a program.
+fn page_beside(program: &Path) -> Option<PathBuf> {
+    Some(program.with_file_name(PAGE_BESIDE)).filter(|page| page.is_file())
 }
 
 /// The page of the checkout around a folder, whose build artefacts are in `target`, if that is not the usual folder.
@@ -178,6 +190,15 @@ mod tests {
         let nowhere = StudioArgs { page: Some("nowhere.html".into()), no_browser: true, port: None };
         let error = page(&nowhere).unwrap_err().to_string();
         assert!(error.contains("nowhere.html cannot be read (") && error.contains("`cargo xtask studio`"), "{error}");
+    }
+
+    #[test]
+    fn a_page_that_lies_beside_the_command_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let (program, page) = (folder.path().join("frixel"), folder.path().join(PAGE_BESIDE));
+        assert_eq!(page_beside(&program), None);
+        fs::write(&page, "").unwrap();
+        assert_eq!(page_beside(&program), Some(page));
     }
 
     #[test]
