@@ -11,7 +11,7 @@ use frixel_wire::fault::State;
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
 
-/// The board of `docs/hardware.md`, with limits that allow the full voltage at every carrier.
+/// The board of `docs/board/hardware.md`, with limits that allow the full voltage at every carrier.
 const BOARD: Board = Board {
     limits: BoardLimits {
         full_scale_v_peak: 200.0,

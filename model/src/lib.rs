@@ -43,9 +43,9 @@
 //! # Accuracy
 //!
 //! The tests compare the results with 80-digit arithmetic on the paper's dimensional equations (`reference/`); each
-//! test is also shown to fail when the output is forced to zero. `docs/model.md` lists how much of each bound is used.
-//! The bounds are relative to the result. They hold for every input for which the results, and for a soft finger also
-//! `F_T/(mu B E R^2)`, are in the normal range of the precision:
+//! test is also shown to fail when the output is forced to zero. `docs/inside/model.md` lists how much of each bound is
+//! used. The bounds are relative to the result. They hold for every input for which the results, and for a soft finger
+//! also `F_T/(mu B E R^2)`, are in the normal range of the precision:
 //!
 //! | | f64 | f32 |
 //! |---|---|---|

@@ -224,7 +224,7 @@ pub struct TouchBound {
 
 impl TouchBound {
     /// Smallest ratio of the allowed current to the current at the bound: 4 % for an amplifier gain above the one
-    /// stored by bring-up, and 1.5 % for a low series resistance (`docs/hardware.md`, "Bring-up").
+    /// stored by bring-up, and 1.5 % for a low series resistance (`docs/board/hardware.md`, "Bring-up").
     pub const MARGIN: f32 = 1.06;
     /// Current at 1 kHz, A.
     const CURRENT_A: f32 = 0.645e-3;

@@ -1,4 +1,4 @@
-//! `cargo xtask hardware`: writes `docs/wiring.md` and `docs/schematic.svg` from `hardware/carrier.toml`.
+//! `cargo xtask hardware`: writes `docs/board/wiring.md` and `docs/board/schematic.svg` from `hardware/carrier.toml`.
 
 mod schematic;
 #[cfg(test)]
@@ -12,8 +12,8 @@ use serde::Deserialize;
 use crate::command::root;
 
 const CARRIER: &str = "hardware/carrier.toml";
-const PAGE: &str = "docs/wiring.md";
-const SCHEMATIC: &str = "docs/schematic.svg";
+const PAGE: &str = "docs/board/wiring.md";
+const SCHEMATIC: &str = "docs/board/schematic.svg";
 /// The processor board among the parts.
 const BOARD: &str = "U1";
 
@@ -215,7 +215,7 @@ fn page(carrier: &Carrier) -> String {
     text
 }
 
-/// Voltages to the common above which a net is dangerous, V peak (`docs/safety.md`).
+/// Voltages to the common above which a net is dangerous, V peak (`docs/board/safety.md`).
 const DANGEROUS_V: f64 = 42.4;
 
 impl Net {

@@ -45,10 +45,10 @@ cargo xtask studio --site FOLDER [ADDRESS]
                      the studio, <frixel-scene> and the gallery as files for any web server; with the site's address,
                      links to it show a picture
 cargo xtask studio-shots
-                     the pictures of docs/studio, of the page as it is; look at each before it is kept
+                     the pictures of docs/design/studio, of the page as it is; look at each before it is kept
 cargo xtask dist FOLDER
                      what is handed on to those who have no checkout: command, images, wheel, page, licences, checksums
-cargo xtask hardware docs/wiring.md, from hardware/carrier.toml
+cargo xtask hardware docs/board/wiring.md, from hardware/carrier.toml
 cargo xtask fuzz SECONDS
                      each fuzz target for this time, with libFuzzer; needs a C++ compiler
 cargo xtask programs PACE FIRST COUNT

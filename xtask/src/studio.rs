@@ -34,7 +34,7 @@ const PAGE_MAX_LEN: usize = 2_000_000;
 pub(crate) const CARRIED: [(&str, &str, &str); 9] = [
     ("host/studio/web", "js", ""),
     ("host/studio/vendor", "js", "vendor/"),
-    ("docs", "json", "docs/"),
+    ("docs/design", "json", "docs/design/"),
     ("scenes", "toml", "scenes/"),
     ("host/studio/web/styles", "css", "styles/"),
     ("scenes/textures", "png", "scenes/textures/"),

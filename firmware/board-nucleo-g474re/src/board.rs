@@ -44,7 +44,8 @@ pub const LIMITS: BoardLimits =
     BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..limits_behind(option_env!("FRIXEL_SERIES_KOHM")) };
 
 /// The limits behind a series resistance in kOhm that the environment of the build names, or else behind the one of
-/// `docs/hardware.md`. Firmware and bring-up are built with the same, or the firmware refuses what bring-up has stored.
+/// `docs/board/hardware.md`. Firmware and bring-up are built with the same, or the firmware refuses what bring-up has
+/// stored.
 const fn limits_behind(series_kohm: Option<&str>) -> BoardLimits {
     let of_docs = Board::NUCLEO_G474RE.limits;
     let Some(series_kohm) = series_kohm else { return of_docs };

@@ -1,5 +1,5 @@
-//! The firmware on a NUCLEO-G474RE: registers and wiring. `docs/hardware.md` lists the pins and the parts. RM0440 is
-//! the reference manual of the STM32G4, DS12288 the data sheet of the STM32G474; text in quotes after them refers to
+//! The firmware on a NUCLEO-G474RE: registers and wiring. `docs/board/hardware.md` lists the pins and the parts. RM0440
+//! is the reference manual of the STM32G4, DS12288 the data sheet of the STM32G474; text in quotes after them refers to
 //! headings in these documents.
 //!
 //! One interrupt, [`tick`], runs above everything, 40,000 times a second. Everything else runs in the main loop,

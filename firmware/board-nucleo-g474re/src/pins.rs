@@ -1,5 +1,5 @@
-//! Pins. The modules that use them and the table of `docs/hardware.md` state their functions; alternate functions are
-//! those of DS12288, "Alternate functions".
+//! Pins. The modules that use them and the table of `docs/board/hardware.md` state their functions; alternate functions
+//! are those of DS12288, "Alternate functions".
 
 use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use stm32_metapac::RCC;

@@ -1,4 +1,5 @@
-//! Pins, by their GPIO number. The modules that use them and the table of `docs/hardware.md` state their functions.
+//! Pins, by their GPIO number. The modules that use them and the table of `docs/board/hardware.md` state their
+//! functions.
 
 use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use rp_pac::{IO_BANK0, PADS_BANK0, RESETS, SIO};
@@ -110,7 +111,7 @@ pub(crate) fn output_low(pin: usize) -> Pin {
 }
 
 /// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a pin
-/// down that was high (erratum RP2350-E9): `docs/hardware.md` asks for a resistor.
+/// down that was high (erratum RP2350-E9): `docs/board/hardware.md` asks for a resistor.
 pub(crate) fn input_pulled_down(pin: usize) -> Pin {
     enable_output(pin, false);
     configure(pin, Function::Sio, Pull::Down, true);

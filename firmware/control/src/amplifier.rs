@@ -32,7 +32,7 @@ pub struct SwitchingTime(f32);
 impl SwitchingTime {
     /// Longest time that a board may state, in s. While an amplifier switches, the supervisor only compares its output
     /// with a ceiling. A startled hand takes 100 ms to let go, so 2 ms add little to a shock. Amplifiers with an enable
-    /// input take from 10 us to 1 ms (assumed, from the parts required by `docs/hardware.md`).
+    /// input take from 10 us to 1 ms (assumed, from the parts required by `docs/board/hardware.md`).
     pub const MAX_S: f32 = 2e-3;
 
     /// A time in s.

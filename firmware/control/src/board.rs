@@ -72,8 +72,8 @@ impl Board {
         notices: 0,
     };
 
-    /// The NUCLEO-G474RE with the parts listed in `docs/hardware.md`, until bring-up has stored other limits. Another
-    /// amplifier, series resistor or electrode needs other numbers.
+    /// The NUCLEO-G474RE with the parts listed in `docs/board/hardware.md`, until bring-up has stored other limits.
+    /// Another amplifier, series resistor or electrode needs other numbers.
     pub const NUCLEO_G474RE: Self = Self {
         kind: BoardKind::NucleoG474re,
         id: [0; 12],
@@ -96,7 +96,7 @@ impl Board {
             series_resistance_ohm: 68e3,
             ..Self::SIMULATOR.limits
         },
-        // As required by `docs/hardware.md`.
+        // As required by `docs/board/hardware.md`.
         amplifier: AmplifierSpec {
             // A large-signal bandwidth of 20 kHz. The series resistor is behind the monitor.
             time_constant_s: 8e-6,

@@ -7,7 +7,7 @@ use embedded_hal::digital::InputPin;
 const HELD_AFTER_US: u32 = 20_000;
 /// Time in us for which the contact must be open before the switch counts as released. It bridges contact breaks from a
 /// moving hand, and leaves 0.3 ms of the 1.1 ms within which the output is off: 0.11 ms for the filter of the wire
-/// (`docs/hardware.md`, "Arm switch"), a tick until the pin is read, and a tick until the DAC has the zero.
+/// (`docs/board/hardware.md`, "Arm switch"), a tick until the pin is read, and a tick until the DAC has the zero.
 const RELEASED_AFTER_US: u32 = 800;
 
 /// A normally open contact, closed while the pin is high.
@@ -144,8 +144,8 @@ mod tests {
     }
 
     /// Longest time, in seconds, from the opening of the contact until the DAC has the zero, with the wire's filter of
-    /// `docs/hardware.md`: the voltage at the pin falls from that of the divider to the level that is low for certain,
-    /// 0.3 of the supply (DS12288, "I/O static characteristics", unread).
+    /// `docs/board/hardware.md`: the voltage at the pin falls from that of the divider to the level that is low for
+    /// certain, 0.3 of the supply (DS12288, "I/O static characteristics", unread).
     fn off_after_s(series_ohm: f64, down_ohm: f64, capacitance_f: f64) -> f64 {
         let high = down_ohm / (down_ohm + series_ohm);
         let discharge_s = down_ohm * capacitance_f * (high / 0.3).ln();

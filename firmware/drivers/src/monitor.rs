@@ -9,8 +9,8 @@ pub struct MonitorScale {
 }
 
 impl MonitorScale {
-    /// The scale of `docs/hardware.md`: 12 bits over 3.3 V. The amplifier's monitor gives 1 V per 100 V, which the
-    /// level shifter converts to 0.75 V around 1.65 V, so that 220 V use the full range.
+    /// The scale of `docs/board/hardware.md`: 12 bits over 3.3 V. The amplifier's monitor gives 1 V per 100 V, which
+    /// the level shifter converts to 0.75 V around 1.65 V, so that 220 V use the full range.
     pub const SHIFTED: Self = Self::new(12, 3.3, 0.75 / 100.0);
 
     /// An ADC of `bits` bits with the range 0 to `reference_v`. 0 V at the amplifier's output is the middle of the

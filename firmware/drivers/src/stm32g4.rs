@@ -53,7 +53,7 @@ const TWO_BANKS: u32 = 1 << 22;
 const NO_RAM_PARITY: u32 = 1 << 24;
 const RESET_PIN_IN_AND_OUT: u32 = 0b11 << 28;
 
-/// Whether the option bytes, as shown by `FLASH_OPTR`, are those required by `docs/hardware.md` ("Option bytes").
+/// Whether the option bytes, as shown by `FLASH_OPTR`, are those required by `docs/board/hardware.md` ("Option bytes").
 pub const fn option_bytes_are_right(flash_optr: u32) -> bool {
     const SET: u32 = BROWN_OUT_LEVEL_4 | TWO_BANKS | NO_RAM_PARITY | RESET_PIN_IN_AND_OUT;
     flash_optr & (SET | BROWN_OUT_LEVEL | SOFTWARE_WATCHDOG | BOOT_FROM_BANK_2) == SET

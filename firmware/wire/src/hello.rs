@@ -76,7 +76,7 @@ pub mod notice {
             OPTION_BYTES,
             "the processor's option bytes are not those that the board needs, so it refuses to arm: switch the amplifier \
              off, set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and \
-             compare all of them if it refuses again (docs/hardware.md, Option bytes)",
+             compare all of them if it refuses again (docs/board/hardware.md, Option bytes)",
         ),
         (
             STORED_LIMITS_REFUSED,

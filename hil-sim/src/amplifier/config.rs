@@ -71,9 +71,9 @@ impl AmplifierConfig {
         monitor_gain: 1.0,
     };
 
-    /// An amplifier as required by `docs/hardware.md`: an offset of 0.5 V (assumed: 25 mV at the input of a gain of
-    /// 20), and a current limit of 5 mA into the simulated board's worst-case electrode, 0.53 nF. It switches at once,
-    /// like [`Self::IDEAL`].
+    /// An amplifier as required by `docs/board/hardware.md`: an offset of 0.5 V (assumed: 25 mV at the input of a gain
+    /// of 20), and a current limit of 5 mA into the simulated board's worst-case electrode, 0.53 nF. It switches at
+    /// once, like [`Self::IDEAL`].
     pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 
     /// [`Self::IDEAL`] with the lags that a board states for its amplifier and its electrode, the latter from its

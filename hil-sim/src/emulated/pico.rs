@@ -38,7 +38,7 @@ const PRESSED_AT: Duration = Duration::from_millis(10);
 /// driver between ticks are ignored.
 const BOUNDARY_TOLERANCE: f64 = 0.2;
 /// ADC codes per volt at the amplifier's output: 1.5 V at the pin for 200 V, of 3.3 V in 4,096 codes, around the middle
-/// (`docs/hardware.md`).
+/// (`docs/board/hardware.md`).
 const MONITOR_CODES_PER_V: f64 = 1.5 / 200.0 / 3.3 * 4096.0;
 const MONITOR_ZERO_CODE: f64 = 2048.0;
 /// DAC codes per volt: 10 V is full scale.

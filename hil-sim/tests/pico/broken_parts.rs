@@ -10,8 +10,8 @@ use frixel_wire::message::Refusal;
 use super::bench::{Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// Ticks that read a broken part until its fault, as `docs/safety.md` has them: the ready line, twice, the monitor (0.4 ms),
-/// and the arm switch (0.8 ms).
+/// Ticks that read a broken part until its fault, as `docs/board/safety.md` has them: the ready line, twice, the
+/// monitor (0.4 ms), and the arm switch (0.8 ms).
 const READY_TICKS: u32 = 2;
 const MONITOR_TICKS: u32 = 3;
 const SWITCH_TICKS: u32 = 6;

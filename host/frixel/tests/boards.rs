@@ -1,4 +1,4 @@
-//! What real boards take of the gallery, as `docs/pico.md` says it.
+//! What real boards take of the gallery, as `docs/board/pico.md` says it.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::fmt::Write as _;
@@ -45,7 +45,7 @@ fn the_page_says_which_scenes_the_picos_take() {
         });
         let _ = writeln!(table, "| {name} | {} |", cells.join(" | "));
     }
-    golden::hold_part(&repository().join("docs/pico.md"), "<!-- scenes", &table);
+    golden::hold_part(&repository().join("docs/board/pico.md"), "<!-- scenes", &table);
 }
 
 /// The scene that the page of bring-up names drives the NUCLEO above the voltage from which its monitor is held against
@@ -53,7 +53,7 @@ fn the_page_says_which_scenes_the_picos_take() {
 #[test]
 fn the_first_scene_after_bring_up_is_taken_and_drives_what_the_monitor_sees() {
     let path = "hardware/first_voltage.toml";
-    assert!(fs::read_to_string(repository().join("docs/hardware.md")).unwrap().contains(path));
+    assert!(fs::read_to_string(repository().join("docs/board/hardware.md")).unwrap().contains(path));
     let said = succeed(&repository(), &["check", path, "--board", "nucleo-g474re"]);
     assert!(said.contains("NUCLEO-G474RE behind 68 kOhm takes it"), "{said}");
     // A scene that asks for all that the drive gives has one target.

@@ -60,7 +60,7 @@ fn friction_error(summary: &MetricsSummary) -> f64 {
 /// Friction of black and of white in the scene, N.
 const BLACK_WHITE_N: (f64, f64) = (-0.0985, 0.166);
 
-/// Electric friction of the picture at a place, by the definition in docs/scene.md and nothing else.
+/// Electric friction of the picture at a place, by the definition in docs/design/scenes.md and nothing else.
 fn picture_n(program: &Program, x_m: f64, y_m: f64) -> f64 {
     let (left_m, top_m, pitch_m) = (0.010, 0.005, 0.4e-3);
     let (black_n, white_n) = BLACK_WHITE_N;

@@ -35,8 +35,8 @@ const SLOW: Class = Class { source: "100", wavelength_mm: 10.0 };
 const MEDIUM: Class = Class { source: "200", wavelength_mm: 5.0 };
 const FAST: Class = Class { source: "500", wavelength_mm: 2.0 };
 
-/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed. `docs/touch.md`
-/// says why.
+/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed.
+/// `docs/design/touch.md` says why.
 const CASES: [(Class, f64, Goal); 9] = [
     (SLOW, 50.0, Goal::SLOW),
     (SLOW, 100.0, Goal { error_max: 0.28, spurious_over_noise_max_db: 7.5, ..Goal::SLOW }),
@@ -126,7 +126,7 @@ fn textures_are_felt_within_the_goals_on_many_strokes() {
 /// Makes a touch source another one.
 type Change = fn(&mut TouchConfig);
 
-/// Prints the tables of `docs/touch.md`.
+/// Prints the tables of `docs/design/touch.md`.
 #[test]
 #[ignore = "takes minutes: cargo xtask soak strokes"]
 fn tables_of_source_and_feature_size() {

@@ -1,4 +1,4 @@
-//! Every scene of `scenes/` plays on the simulator, and `docs/gallery.md` shows it.
+//! Every scene of `scenes/` plays on the simulator, and `docs/design/gallery.md` shows it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -253,9 +253,10 @@ fn page(gallery: &[Entry]) -> String {
                     main gallery`, and the same test plays every scene on the\nsimulator.\n"
         .to_owned();
     page.push_str(
-        "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber steps: factors of 1.11, \
-         about the smallest step\nof friction that a finger feels. The goal is 2.3 under the example finger. All four fingers are \
-         assumed; [scene.md](scene.md#fingers-and-screens) has\ntheir numbers.\n\n| scene |",
+        "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber \
+         steps: factors of 1.11, about\nthe smallest step of friction that a finger feels. The goal is 2.3 under the \
+         example finger. All four fingers are\nassumed; [scenes.md](scenes.md#fingers-and-screens) has their \
+         numbers.\n\n| scene |",
     );
     for finger in FingerProfile::bundled_names() {
         let _ = write!(page, " {finger} |");
@@ -272,7 +273,8 @@ fn page(gallery: &[Entry]) -> String {
         let name = &entry.name;
         let _ = write!(
             page,
-            "\n## {name}\n\n{}\n\n[scenes/{name}.toml](../scenes/{name}.toml)\n\n![friction map of {name}.toml](gallery/{name}.png)\n",
+            "\n## {name}\n\n{}\n\n[scenes/{name}.toml](../../scenes/{name}.toml)\n\n\
+             ![friction map of {name}.toml](gallery/{name}.png)\n",
             lines(&entry.comment())
         );
     }
@@ -283,7 +285,7 @@ fn page(gallery: &[Entry]) -> String {
 fn with_sections(document: &str, gallery: &[Entry]) -> String {
     let [first, end] = ["    <section>\n", "</section>\n"];
     let (Some(begin), Some(last)) = (document.find(first), document.rfind(end)) else {
-        panic!("docs/gallery/index.html has no section")
+        panic!("docs/design/gallery/index.html has no section")
     };
     let mut sections = String::new();
     for entry in gallery {
@@ -302,7 +304,7 @@ fn with_sections(document: &str, gallery: &[Entry]) -> String {
 #[test]
 fn the_gallery_in_the_docs_shows_these_scenes() {
     let gallery = gallery();
-    let docs = repository().join("docs");
+    let docs = repository().join("docs/design");
     let drawn_in = tempfile::tempdir().unwrap();
     let held_in = docs.join("gallery");
     golden::hold(&docs.join("gallery.md"), &page(&gallery));
@@ -319,7 +321,7 @@ fn the_gallery_in_the_docs_shows_these_scenes() {
     }
     let held = fs::read_dir(&held_in).unwrap().map(|entry| entry.unwrap().path());
     let pictures = held.filter(|path| path.extension().is_some_and(|ending| ending == "png")).count();
-    assert_eq!(pictures, gallery.len(), "docs/gallery has pictures of no scene");
+    assert_eq!(pictures, gallery.len(), "docs/design/gallery has pictures of no scene");
     let document = held_in.join("index.html");
     golden::hold(&document, &with_sections(&fs::read_to_string(&document).unwrap(), &gallery));
 }

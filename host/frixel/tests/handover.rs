@@ -15,7 +15,7 @@ use frixel_testkit::Random;
 
 /// Host timeout of the scene here.
 const HOST_TIMEOUT: Duration = Duration::from_millis(100);
-/// Time within which a board acts on it (docs/safety.md).
+/// Time within which a board acts on it (docs/board/safety.md).
 const ACTS_WITHIN: Duration = Duration::from_millis(1);
 /// Clients that are killed.
 const KILLS: usize = 20;

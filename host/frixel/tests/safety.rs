@@ -95,8 +95,8 @@ fn a_series_resistance_that_no_firmware_takes_is_named() {
     }
 }
 
-const PAGE: &str = include_str!("../../../docs/safety.md");
-const FIRST_BOARD: &str = include_str!("../../../docs/first-board.md");
+const PAGE: &str = include_str!("../../../docs/board/safety.md");
+const FIRST_BOARD: &str = include_str!("../../../docs/board/first-board.md");
 
 #[test]
 fn every_test_that_the_page_names_exists() {
@@ -211,8 +211,8 @@ fn gallery() -> String {
 
 #[test]
 fn the_pages_say_what_is_felt_within_the_limits() {
-    golden::hold_part(&repository().join("docs/safety.md"), "<!-- fingers", &fingers());
-    golden::hold_part(&repository().join("docs/first-board.md"), "<!-- gallery", &gallery());
+    golden::hold_part(&repository().join("docs/board/safety.md"), "<!-- fingers", &fingers());
+    golden::hold_part(&repository().join("docs/board/first-board.md"), "<!-- gallery", &gallery());
 }
 
 /// The page's other numbers are printed by its command.
@@ -232,7 +232,7 @@ fn the_page_has_the_numbers_of_the_command() {
         assert!(text.contains(found) && PAGE.replace('\n', " ").contains(said), "{found}: {text}");
     }
     // Those of the return path.
-    let hardware = include_str!("../../../docs/hardware.md");
+    let hardware = include_str!("../../../docs/board/hardware.md");
     for (found, said) in [
         ("1000 Hz   99  98  return contact", "99 % of the voltage is across the gap, and 98 % of the force"),
         ("1000 Hz   21   4  no contact, the common isolated", "without the contact 21 % and 4 %"),

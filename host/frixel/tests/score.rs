@@ -161,10 +161,10 @@ fn people_differ_and_come_again() {
     assert_eq!(json, plays());
 }
 
-/// The command under the tables of `docs/touch.md` prints the cell that it is said to print.
+/// The command under the tables of `docs/design/touch.md` prints the cell that it is said to print.
 #[test]
 fn the_command_of_the_touch_tables_prints_their_cell() {
-    let docs = repository().join("docs");
+    let docs = repository().join("docs/design");
     let page = std::fs::read_to_string(docs.join("touch.md")).unwrap();
     let command = page.lines().find(|line| line.starts_with("frixel score touch/")).unwrap();
     let row = page.lines().find(|line| line.starts_with("| 100 Hz | 10 mm |")).unwrap();

@@ -68,10 +68,10 @@ fn a_board_in_order_passes_and_its_report_is_a_file() {
     assert_eq!(found("clocks_in_sync_at_least"), 24);
     assert_eq!(report["ticks"]["alone"].as_array().unwrap().len(), 9, "{report}");
     // The page says what each of them means.
-    let page = include_str!("../../../docs/first-board.md");
+    let page = include_str!("../../../docs/board/first-board.md");
     for found in measurements {
         let name = found["name"].as_str().unwrap();
-        assert!(page.contains(&format!("`{name}`")), "docs/first-board.md does not have {name}");
+        assert!(page.contains(&format!("`{name}`")), "docs/board/first-board.md does not have {name}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a bad line leaves of an upload and of a stream: nothing that arrives damaged is accepted, and what cannot get
-//! through ends with a sentence. The test of three seconds holds the table of `docs/scenarios.md`, and `FRIXEL_BLESS=1
-//! cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for longer.
+//! through ends with a sentence. The test of three seconds holds the table of `docs/inside/scenarios.md`, and
+//! `FRIXEL_BLESS=1 cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for
+//! longer.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -222,7 +223,7 @@ fn nothing_damaged_is_accepted_and_what_does_not_get_through_ends_with_a_sentenc
     const STREAM_S: f64 = 3.0;
     let rows = rows(STREAM_S);
     check(&rows, STREAM_S);
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/inside/scenarios.md");
     golden::hold_part(&file, "<!-- goodput", &table(&rows, STREAM_S));
 }
 

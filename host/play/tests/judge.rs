@@ -106,7 +106,7 @@ fn spokes_are_felt_however_they_are_turned() {
 /// Layers and clicks that people copy. No study covers what a program streams.
 #[test]
 fn the_examples_of_the_docs_are_felt() {
-    let examples = examples::blocks(include_str!("../../../docs/scene.md"));
+    let examples = examples::blocks(include_str!("../../../docs/design/scenes.md"));
     for example in examples.iter().filter(|example| example.contains("[[layer]]")) {
         let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
         let program = program(&examples::below_head(examples[0], example));

@@ -32,12 +32,12 @@ def test_the_blocks_of_the_document_run_one_after_the_other(
 ) -> None:
     mpl.use("agg")
     monkeypatch.chdir(tmp_path)
-    text = (REPOSITORY / "docs/python.md").read_text(encoding="utf-8")
+    text = (REPOSITORY / "docs/python/module.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert len(blocks) >= 5
     names: dict[str, Any] = {}
     for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)
+        exec(compile(block, "docs/python/module.md", "exec"), names)
     printed = capsys.readouterr().out
     assert "nan" in printed
     assert "3 8 " in printed, "the place of the mistake"
@@ -51,10 +51,10 @@ def test_other_programs_see_and_keep_what_a_recording_says(
     monkeypatch.chdir(tmp_path)
     recording = frixel.Simulator(frixel.Scene.load(scenes / "brick.toml")).run(0.05)
     recording.to_parquet("P07.parquet", participant="P07")
-    text = (REPOSITORY / "docs/outputs.md").read_text(encoding="utf-8")
+    text = (REPOSITORY / "docs/design/outputs.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict[str, Any] = {}
-    exec(compile(block, "docs/outputs.md", "exec"), names)
+    exec(compile(block, "docs/design/outputs.md", "exec"), names)
     assert (names["unit"], names["participant"]) == (b"mm", "P07")
     assert "scene_began" in json.dumps(names["markers"])
     assert (names["made"]["participant"], names["scene"]) == ("P07", recording.scene.text)

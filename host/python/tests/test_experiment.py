@@ -282,9 +282,9 @@ def test_the_table_of_answers_is_that_of_psignifit() -> None:
 
 
 def test_the_experiment_of_the_document_finds_its_observers(capsys: pytest.CaptureFixture[str]) -> None:
-    text = (REPOSITORY / "docs/experiments.md").read_text(encoding="utf-8")
+    text = (REPOSITORY / "docs/python/experiments.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    exec(compile(block, "docs/experiments.md", "exec"), {})
+    exec(compile(block, "docs/python/experiments.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
     numbers = [re.search(r"threshold (\S+), (\S+) to (\S+) ", line) for line in lines]
     intervals = [(float(found[2]), float(found[3])) for found in numbers if found]

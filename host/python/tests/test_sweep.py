@@ -87,7 +87,7 @@ def test_two_dask_workers_of_which_one_is_killed_give_the_bytes_of_one_process(p
 
 def test_the_program_of_the_document_gives_the_bytes_of_the_command(plan: Path) -> None:
     plan.write_text(PLAN.replace("people = 40", "people = 2").replace("[0.02]", "[0.005, 0.02]"))
-    text = (REPOSITORY / "docs/scale.md").read_text(encoding="utf-8")
+    text = (REPOSITORY / "docs/python/scale.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     program = plan.parent / "program.py"
     program.write_text(block)

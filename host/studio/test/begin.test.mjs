@@ -82,7 +82,7 @@ test("completion offers what the kind of a layer has, and inserts what one of it
     return page.evaluate(() => studioPage.editor.text);
   };
   const kinds = await page.evaluate(async () => {
-    const schema = JSON.parse(await studio.text("docs/scene.schema.json"));
+    const schema = JSON.parse(await studio.text("docs/design/scene.schema.json"));
     return schema.definitions.shared_layer.properties.kind.enum;
   });
   assert.equal(kinds.length, 12);

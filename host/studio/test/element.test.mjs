@@ -149,8 +149,8 @@ async function serve(folder, context, policy) {
   return `http://127.0.0.1:${server.address().port}/index.html`;
 }
 
-test("under the content security policy of docs/studio.md a scene plays, and under less a sentence says what it needs", async (context) => {
-  const text = fs.readFileSync(new URL("../../../docs/studio.md", import.meta.url), "utf8");
+test("under the content security policy of docs/design a scene plays, and under less a sentence says what it needs", async (context) => {
+  const text = fs.readFileSync(new URL("../../../docs/design/studio.md", import.meta.url), "utf8");
   const [policy] = text.match(/default-src .*/);
   const folder = documentOf('<frixel-scene id="there" scene="constant"></frixel-scene>');
   const page = await openPage(await serve(folder, context, policy), { isSimulated: true });

@@ -1,10 +1,10 @@
-// The pictures of docs/studio: `shots.mjs` takes each of them, and a document shows it.
+// The pictures of docs/design/studio: `shots.mjs` takes each of them, and a document shows it.
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { test } from "node:test";
 
-const DOCS = new URL("../../../docs/", import.meta.url);
+const DOCS = new URL("../../../docs/design/", import.meta.url);
 
 test("each picture of the studio is taken by the command and shown in a document, and none is missing", () => {
   const pictures = fs.readdirSync(new URL("studio/", DOCS)).sort();

@@ -1,12 +1,12 @@
-// Takes the pictures of docs/studio, all that are there: `cargo xtask studio-shots`. Some of them: `cargo xtask studio`,
-// then `STUDIO_PAGE=PATH node shots.mjs NAME ...` in this folder. Each picture is looked at before it is kept.
+// Takes the pictures of docs/design/studio, all that are there: `cargo xtask studio-shots`. Some of them: `cargo xtask
+// studio`, then `STUDIO_PAGE=PATH node shots.mjs NAME ...` in this folder. Each picture is looked at before it is kept.
 
 import fs from "node:fs";
 import path from "node:path";
 import { endFile, endTest, openPage } from "./harness.mjs";
 import { give, openStudio } from "./page.mjs";
 
-const OUT = new URL("../../../docs/studio/", import.meta.url).pathname;
+const OUT = new URL("../../../docs/design/studio/", import.meta.url).pathname;
 const wanted = process.argv.slice(2);
 
 /** Opens the studio; `size` is that of the window. With `isFirstVisit`, text and tools are closed. */
@@ -163,7 +163,7 @@ live = true
     }
   },
   async element() {
-    const page = await openPage(new URL("../../../docs/gallery/index.html", import.meta.url).href);
+    const page = await openPage(new URL("../../../docs/design/gallery/index.html", import.meta.url).href);
     await page.setViewportSize({ width: 1000, height: 900 });
     const canvas = page.locator("frixel-scene[scene=brick] #map-finger");
     await canvas.waitFor();

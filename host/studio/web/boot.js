@@ -83,7 +83,7 @@ function boot(packed, entry, folder) {
 
   const policy =
     "if this document has a content security policy, it must allow script-src blob: 'wasm-unsafe-eval', " +
-    "worker-src blob:, and connect-src for scenes and pictures beside it (docs/studio.md)";
+    "worker-src blob:, and connect-src for scenes and pictures beside it (docs/design/studio.md)";
 
   globalThis.studio = { bytes, text, names, moduleUrl, policy };
   moduleUrl(entry)

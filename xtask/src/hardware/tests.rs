@@ -150,7 +150,7 @@ fn both_processor_boards_have_the_same_nets() {
 #[test]
 fn the_wires_of_the_self_test_are_those_of_its_page() {
     let carrier = read().unwrap();
-    let page = fs::read_to_string(root().join("docs/first-board.md")).unwrap();
+    let page = fs::read_to_string(root().join("docs/board/first-board.md")).unwrap();
     let rows: Vec<Vec<&str>> = page
         .lines()
         .map(|line| line.split('|').map(str::trim).collect::<Vec<_>>())

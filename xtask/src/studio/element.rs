@@ -12,7 +12,7 @@ const READ: [&str; 5] = ["engine.wasm", "engine/", "styles/base.css", "styles/pa
 const SCENES: &str = "scenes/";
 /// Endings of pictures.
 const PICTURES: [&str; 2] = [".png", ".jpg"];
-const TITLE: &str = "// <frixel-scene> of frixel: docs/studio.md says how to use it.";
+const TITLE: &str = "// <frixel-scene> of frixel: docs/design/studio.md says how to use it.";
 
 /// A script for documents on a disk, with the pictures of the bundled scenes.
 pub(super) fn script(files: &Files) -> Result<String, String> {

@@ -28,14 +28,14 @@ const COPIED: [(&str, &str); 5] = [
     (ICON, "icon.svg"),
     ("host/studio/site/icon-192.png", "icon-192.png"),
     ("host/studio/site/icon-512.png", "icon-512.png"),
-    ("docs/studio/play.png", PREVIEW),
+    ("docs/design/studio/play.png", PREVIEW),
 ];
 const PREVIEW: &str = "preview.png";
 const MODULE: &str = "frixel-scene.module.js";
 const WORKER: &str = "service-worker.js";
-/// The script line of docs/gallery/index.html, and that of the site.
+/// The script line of docs/design/gallery/index.html, and that of the site.
 const GALLERY_SCRIPT: (&str, &str) = (
-    "<script\n      src=\"../../target/studio/frixel-scene.js\"",
+    "<script\n      src=\"../../../target/studio/frixel-scene.js\"",
     "<script\n      type=\"module\"\n      src=\"../frixel-scene.module.js\"",
 );
 const TITLE: &str = "frixel studio";
@@ -75,7 +75,7 @@ fn site(carried: &Files, address: Option<&str>) -> Result<Files, String> {
     for (from, name) in COPIED {
         site.insert(name.to_owned(), bytes(&root().join(from))?);
     }
-    gallery(&root().join("docs/gallery"), &mut site)?;
+    gallery(&root().join("docs/design/gallery"), &mut site)?;
     let worker = worker(&site)?;
     site.insert(WORKER.to_owned(), worker.into_bytes());
     Ok(site)
@@ -107,7 +107,7 @@ fn gallery(folder: &Path, site: &mut Files) -> Result<(), String> {
     let (here, there) = GALLERY_SCRIPT;
     let document = text(&folder.join("index.html"))?;
     if !document.contains(here) {
-        return Err(format!("docs/gallery/index.html does not have the script as expected: {here}"));
+        return Err(format!("docs/design/gallery/index.html does not have the script as expected: {here}"));
     }
     site.insert("gallery/index.html".to_owned(), document.replacen(here, there, 1).into_bytes());
     super::collect(folder, "png", "gallery/", false, site)

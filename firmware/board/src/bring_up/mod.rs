@@ -1,5 +1,5 @@
-//! Bring-up: takes a new board step by step from nothing connected to stored limits. `docs/hardware.md`, "Bring-up",
-//! describes the steps for the person who performs them.
+//! Bring-up: takes a new board step by step from nothing connected to stored limits. `docs/board/hardware.md`,
+//! "Bring-up", describes the steps for the person who performs them.
 //!
 //! [`run`] is the script. It gives instructions and asks for readings through a [`Bench`], which the board implements.
 //! The following holds for any behaviour of board and person:

@@ -149,7 +149,7 @@ pub fn run(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<BoardLimits
 /// Waits for the greeting, which shows that the serial port works in both directions.
 fn greet(bench: &mut impl Bench) {
     bench.say(format_args!(""));
-    bench.say(format_args!("frixel bring-up. Read docs/hardware.md first: this board drives hundreds of volts."));
+    bench.say(format_args!("frixel bring-up. Read docs/board/hardware.md first: this board drives hundreds of volts."));
     bench.say(format_args!(
         "Nothing is driven before step 5. A wrong reading ends bring-up, and only a reset begins it again."
     ));

@@ -1,5 +1,5 @@
 //! Self-test: measures a new board with a few wires between its own pins, without DAC, amplifier and voltage.
-//! `docs/first-board.md` describes it for the person who performs it.
+//! `docs/board/first-board.md` describes it for the person who performs it.
 //!
 //! [`run`] is the script. It drives and measures the pins through a [`LoopedBoard`], which the board implements, and
 //! prints each [`Measurement`] as a machine-readable line: `frixel board selftest --wires` writes them to a report. The

@@ -162,7 +162,7 @@ fn steps(board: &mut impl LoopedBoard) -> Result<u32, Stop> {
 fn greet(board: &mut impl LoopedBoard) {
     let kind = board.board().kind;
     board.say(format_args!(""));
-    board.say(format_args!("Read docs/first-board.md first. No amplifier is plugged in, and its supply is off."));
+    board.say(format_args!("Read docs/board/first-board.md first. No amplifier is plugged in, and its supply is off."));
     confirm(board, format_args!("This begins the self-test."), GREETING);
     // Not earlier: output at the start is lost if no host has opened the port yet.
     board.say(format_args!("{}{kind}", ScriptLine::Begin(VERSION, "")));
@@ -208,8 +208,8 @@ fn unplug<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     confirm(
         board,
         format_args!(
-            "1. Put the wires on, as docs/first-board.md lists them. The enable is pulsed: the amplifier is unplugged, and \
-             so is the DAC."
+            "1. Put the wires on, as docs/board/first-board.md lists them. The enable is pulsed: the amplifier is \
+             unplugged, and so is the DAC."
         ),
         UNPLUGGED,
     );

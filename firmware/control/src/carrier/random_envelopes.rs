@@ -23,7 +23,7 @@ struct Lags {
 impl Lags {
     /// The simulated amplifier, whose time constant is that of the electrode. The other one is too short to matter.
     const SIMULATOR: Self = Self { amplifier_s: 1e-9, series_s: 20e-6 };
-    /// `docs/hardware.md`: 20 kHz, and 68 kOhm before 0.53 nF.
+    /// `docs/board/hardware.md`: 20 kHz, and 68 kOhm before 0.53 nF.
     const G474: Self = Self { amplifier_s: 8e-6, series_s: 36e-6 };
 
     /// The board's limit of that name: the one lag that takes as much of the mean square.

@@ -3,7 +3,7 @@
 //! A Kalman filter of place, velocity and acceleration along each axis. The acceleration is random and decays with a
 //! time constant (R. A. Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970, 473). Both axes share
 //! the covariance. It grows with the time between samples, so that after a lost sample, the filter gives the next one
-//! more weight; a filter with constant gains does not (`docs/touch.md` compares both).
+//! more weight; a filter with constant gains does not (`docs/design/touch.md` compares both).
 
 /// Time constant of the finger's acceleration, in s. From 0.03 to 0.1, the error on human strokes changes by only a
 /// twentieth.
@@ -12,7 +12,7 @@ const ACCELERATION_S: f32 = 0.04;
 const ACCELERATION_M_PER_S2: f32 = 0.3;
 /// Standard deviation of the acceleration per m/s of recent speed, in 1/s, added to that of a finger at rest, since a
 /// fast finger also turns fast. On strokes with the acceleration of smoothed recordings, the error is smallest at 4 to
-/// 8; with that of unsmoothed ones, at 12 to 20 (`docs/touch.md`).
+/// 8; with that of unsmoothed ones, at 12 to 20 (`docs/design/touch.md`).
 const ACCELERATION_PER_SPEED_PER_S: f32 = 8.0;
 /// Time constant with which the recent speed decays, in s.
 const RECENT_S: f32 = 0.5;

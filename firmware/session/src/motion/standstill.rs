@@ -10,8 +10,8 @@ use frixel_control::is_past;
 /// Time, in s, in which a finger that moves by less than [`SLOW_WITHIN_M`], 1.2 mm/s on average, counts as still.
 const STILL_AFTER_S: f32 = 50e-3;
 /// See [`STILL_AFTER_S`]. A larger value would ramp down under creeping fingers, a smaller one would drive a resting
-/// finger for more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time; docs/touch.md
-/// states it.
+/// finger for more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time;
+/// docs/design/touch.md states it.
 const SLOW_WITHIN_M: f32 = 0.06e-3;
 /// Distance, in m, by which a still finger must move within [`MOVING_WITHIN_S`], 2 mm/s on average, to count as moving.
 /// It is more than a step of 0.18 mm along one side, as reported by screens.

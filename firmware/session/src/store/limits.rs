@@ -16,8 +16,8 @@ pub const LIMITS_LEN: usize = 4 * WORD_LEN;
 
 /// Largest voltage that may be stored, in V peak.
 ///
-/// It is the rating of the parts in `docs/hardware.md`. The limit for a person who touches the electrode is separate:
-/// it follows from the series resistance, and is not stored (`frixel_model::TouchBound`).
+/// It is the rating of the parts in `docs/board/hardware.md`. The limit for a person who touches the electrode is
+/// separate: it follows from the series resistance, and is not stored (`frixel_model::TouchBound`).
 pub const VOLTAGE_CEILING_V_PEAK: f32 = 200.0;
 /// Largest rms current that may be stored, in A: the limit of IEC 61010-1, 6.3.1 (unread) for normal use.
 ///

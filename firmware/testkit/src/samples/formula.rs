@@ -1,4 +1,4 @@
-//! The friction of a scene file as a formula of the place, from the words of `docs/scene.md`: mm, mN, `f64`.
+//! The friction of a scene file as a formula of the place, from the words of `docs/design/scenes.md`: mm, mN, `f64`.
 
 use core::f64::consts::TAU;
 

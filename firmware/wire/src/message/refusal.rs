@@ -336,7 +336,7 @@ impl fmt::Display for Refusal {
             Self::OptionBytes => f.write_str(
                 "the processor's option bytes do not allow the board to drive: switch the amplifier off, run \
                  `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and compare all of them \
-                 if it refuses again (docs/hardware.md, Option bytes)",
+                 if it refuses again (docs/board/hardware.md, Option bytes)",
             ),
         }
     }

@@ -3,7 +3,7 @@
 use super::Fidelity;
 
 /// The required fidelity of a texture, including start and end of a touch. The simulator's tests enforce it, and
-/// `docs/touch.md` lists touch sources, speeds and textures that reach it.
+/// `docs/design/touch.md` lists touch sources, speeds and textures that reach it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     /// Largest [`FidelityMean::error`].

@@ -1,5 +1,5 @@
 //! Thresholds of touch, with their sources. Those quoted from memory are marked, and must be checked before anyone
-//! relies on them; `docs/truth.md` lists them.
+//! relies on them; `docs/inside/evidence.md` lists them.
 
 use frixel_hil_sim::RELAXATION_LENGTH_M;
 use serde::{Deserialize, Serialize};

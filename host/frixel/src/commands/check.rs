@@ -21,7 +21,7 @@ use super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
-    /// The scene, a TOML file (docs/scene.md).
+    /// The scene, a TOML file (docs/design/scenes.md).
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
@@ -117,7 +117,8 @@ fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
     let until_measured = board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
         format!(
-            "                   nothing stores limits on this board yet: it allows {v_peak} V peak (docs/pico.md)\n"
+            "                   nothing stores limits on this board yet: it allows {v_peak} V peak \
+             (docs/board/pico.md)\n"
         )
     });
     format!(

@@ -117,7 +117,7 @@ struct SimArgs {
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Run a scenario in place of serving a board, as fast as it goes: what a host does, what goes wrong, and what has
-    /// to be seen (docs/scenarios.md). Prints what happened.
+    /// to be seen (docs/inside/scenarios.md). Prints what happened.
     #[arg(
         long,
         value_name = "FILE.toml",

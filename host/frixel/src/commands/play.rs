@@ -42,7 +42,7 @@ use target::Target;
 #[derive(Debug, Args)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub(super) struct PlayArgs {
-    /// The scene, a TOML file (docs/scene.md).
+    /// The scene, a TOML file (docs/design/scenes.md).
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
@@ -80,7 +80,7 @@ pub(super) struct PlayArgs {
     /// Simulated person, another for each seed, for whom the scene is not made.
     #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true, help_heading = RARE)]
     finger_seed: Option<u64>,
-    /// Also record the play, and all that made it, for `frixel replay` (docs/outputs.md).
+    /// Also record the play, and all that made it, for `frixel replay` (docs/design/outputs.md).
     #[arg(long, value_name = "FILE.parquet")]
     record: Option<PathBuf>,
     /// Participant's code in the file of --record, no name: letters, digits, `-_.`.
@@ -101,7 +101,7 @@ pub(super) struct PlayArgs {
     /// Play the scene anew whenever its file is saved.
     #[arg(long)]
     watch: bool,
-    /// Change the scene by lines on standard input, such as `layer 3 off` (docs/scene.md).
+    /// Change the scene by lines on standard input, such as `layer 3 off` (docs/design/scenes.md).
     #[arg(long)]
     control: bool,
     /// Join the felt.csv that the `frixel sim` at --port writes: what its finger felt.

@@ -20,7 +20,7 @@ use super::terminal::{note_refusals, print_line};
 
 #[derive(Debug, Args)]
 pub(super) struct PreviewArgs {
-    /// The scene, a TOML file (docs/scene.md).
+    /// The scene, a TOML file (docs/design/scenes.md).
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,

@@ -42,7 +42,7 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
     if expect && scenario.expectations.is_empty() {
         bail!(
             "{}: --expect compares with what this scenario expects, and it expects nothing: add an [[expect]] \
-             (docs/scenarios.md)",
+             (docs/inside/scenarios.md)",
             file.display()
         );
     }

@@ -21,7 +21,7 @@ use super::terminal::print_line;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArgs {
-    /// The scene, a TOML file (docs/scene.md).
+    /// The scene, a TOML file (docs/design/scenes.md).
     scene: PathBuf,
     #[command(flatten)]
     profiles: ProfileArgs,
@@ -63,7 +63,7 @@ pub(super) struct ScoreArgs {
 
 pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     // The board's limit for the time between two reports stays that of the slowest class, 10 ms: a fast source that
-    // loses reports would otherwise turn the output off (docs/touch.md).
+    // loses reports would otherwise turn the output off (docs/design/touch.md).
     let (board, world) = (Board::SIMULATOR, args.touch.world(args.ideal)?);
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let inputs = Inputs::new(files.paths().chain([Path::new(&args.stroke)]).chain(args.touch.file()));

@@ -32,7 +32,7 @@ const WAIT_MAX: Duration = Duration::from_secs(10);
 pub(super) struct SweepArgs {
     #[command(subcommand)]
     command: Option<SweepCommand>,
-    /// The plan, a TOML file (docs/scale.md).
+    /// The plan, a TOML file (docs/python/scale.md).
     #[arg(required = true)]
     plan: Option<PathBuf>,
     /// Folder for the results. Cells that are there already are not played again.

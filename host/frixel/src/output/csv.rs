@@ -13,7 +13,7 @@ use crate::rigs::BoardEvent;
 use frixel_files::FileWriter;
 use frixel_lab::calibration::ForceRow;
 
-/// A row of a CSV file. `docs/outputs.md` describes the columns.
+/// A row of a CSV file. `docs/design/outputs.md` describes the columns.
 pub(crate) trait CsvRow {
     /// The column names, separated by commas.
     const HEADER: &'static str;

@@ -307,9 +307,9 @@ fn a_signal_too_fast_to_draw_is_drawn_as_its_envelope() {
 
 #[test]
 fn every_flag_of_the_rows_is_documented() {
-    let page = include_str!("../../../../docs/outputs.md");
+    let page = include_str!("../../../../docs/design/outputs.md");
     for name in Flags(u16::MAX).names() {
-        assert!(page.contains(&format!("\n| `{name}` | ")), "docs/outputs.md says nothing about the flag {name}");
+        assert!(page.contains(&format!("\n| `{name}` | ")), "outputs.md says nothing about the flag {name}");
     }
 }
 

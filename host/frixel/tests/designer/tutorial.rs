@@ -1,4 +1,4 @@
-//! `docs/tutorial.md` does what it says.
+//! `docs/design/tutorial.md` does what it says.
 //!
 //! The test does what a reader does, block by block: it runs every line of a block `sh`, and those that go on (`frixel
 //! sim`, `--watch`) until the page ends; it writes a block `toml` into the file that the line above the block names; it
@@ -144,7 +144,7 @@ fn expect_playable(folder: &Path) {
 
 #[test]
 fn every_command_of_the_tutorial_runs() {
-    let page = File::open(scenes().join("../docs/tutorial.md")).unwrap();
+    let page = File::open(scenes().join("../docs/design/tutorial.md")).unwrap();
     let folder = TempDir::new().unwrap();
     fs::copy(scenes().join("textures/wood.jpg"), folder.path().join("wood.jpg")).unwrap();
     let mut reader = Reader { folder, board: None, watching: None, printed: String::new(), commands: 0, edits: 0 };

@@ -1,4 +1,4 @@
-//! What the words of `docs/scene.md` mean, in mm, mN and seconds.
+//! What the words of `docs/design/scenes.md` mean, in mm, mN and seconds.
 
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
 //! Every kind of layer, region and blend, from the scene file to the finger.
 //!
 //! The expected friction stands in `f64` beside each scene, from the file's own numbers and the words of
-//! `docs/scene.md`.
+//! `docs/design/scenes.md`.
 //! The library's evaluation has to agree with it, and what the simulated finger felt has to be near it: all lags
 //! included, over means of a carrier period, within a bound that was measured and set a fifth above. A drive without
 //! voltage must miss the same bound.

@@ -1,4 +1,4 @@
-//! The first example of `docs/scenarios.md`, as a reader of the page has it.
+//! The first example of `docs/inside/scenarios.md`, as a reader of the page has it.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 pub(crate) fn page() -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md")).unwrap()
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/inside/scenarios.md")).unwrap()
 }
 
 /// The scenario of the page.

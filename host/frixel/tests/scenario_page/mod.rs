@@ -1,4 +1,4 @@
-//! What `docs/scenarios.md` shows of its first example is what a reader sees.
+//! What `docs/inside/scenarios.md` shows of its first example is what a reader sees.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 pub(crate) mod example;

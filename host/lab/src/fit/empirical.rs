@@ -166,7 +166,7 @@ fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
             return Err(FitError::NoPowerLaw(format!(
                 "at {voltage_v_rms:.0} V rms electric friction was {measured_mn:.1} mN, and the power law that fits best \
                  says {law_mn:.1} mN, further than the noise of these strokes explains ({error_mn:.1} mN): write the \
-                 points that you measured into a profile (docs/scene.md, \"Empirical fingers\")"
+                 points that you measured into a profile (docs/design/scenes.md, \"Empirical fingers\")"
             )));
         }
         beside_n = residual_n;

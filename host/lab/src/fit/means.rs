@@ -228,7 +228,7 @@ fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted:
             "the means lie {times:.1} times their stated errors from the closest power law, and chance does that in fewer \
              than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all rows are \
              of the same fingers; if so, electric friction follows no power of the voltage: write its points into a \
-             profile (docs/scene.md, \"Empirical fingers\")"
+             profile (docs/design/scenes.md, \"Empirical fingers\")"
         )));
     }
     Ok(())

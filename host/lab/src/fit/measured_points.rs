@@ -8,7 +8,7 @@ use super::{Point, StrokeResult, rules};
 use crate::bootstrap::{Estimate, Z_95};
 use crate::statistics::{mean, student_quantile};
 
-/// Most points of a profile (`docs/scene.md`, "Empirical fingers").
+/// Most points of a profile (`docs/design/scenes.md`, "Empirical fingers").
 const POINTS_MAX: usize = 16;
 /// Powers of the voltage that a profile may have, below its first point and from one to the next.
 pub(super) const EXPONENTS: core::ops::RangeInclusive<f64> = 0.5..=12.0;

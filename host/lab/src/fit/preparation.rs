@@ -45,7 +45,7 @@ impl Preparation {
             ),
             None => {
                 "no second without contact shows the sensor's zero: a sensor that was not tared shifts the friction \
-                     coefficient (docs/outputs.md, \"Taring\")"
+                     coefficient (docs/design/outputs.md, \"Taring\")"
                     .to_owned()
             }
         });

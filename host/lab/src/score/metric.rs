@@ -35,7 +35,7 @@ pub struct Human {
 }
 
 /// What a display is to reach, for features that are as large as its touch source needs and strokes with a median speed
-/// of at most 100 mm/s (`docs/touch.md`).
+/// of at most 100 mm/s (`docs/design/touch.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {

@@ -44,7 +44,7 @@ class Telemetry:
     state: str
     """`disarmed`, `armed`, `active` or `faulted`."""
     flags: tuple[str, ...]
-    """What limits the output, and how the finger is, a word each (`docs/outputs.md`)."""
+    """What limits the output, and how the finger is, a word each (`docs/design/outputs.md`)."""
     x_mm: float
     """Estimated place of the finger, from the left edge of the screen."""
     y_mm: float

@@ -31,8 +31,8 @@ class Fit:
     finger
         The finger, for `Scene.with_finger` and `Simulator`; `finger.text` is its file.
     summary
-        The numbers of `frixel finger fit --json` (`docs/outputs.md`), each with its 95 % interval under its name with
-        `_interval`. The main ones are `friction_coefficient`, without a unit; `electric_friction_n`, N, at
+        The numbers of `frixel finger fit --json` (`docs/design/outputs.md`), each with its 95 % interval under its name
+        with `_interval`. The main ones are `friction_coefficient`, without a unit; `electric_friction_n`, N, at
         `stated_voltage_v_rms`, V rms, under `normal_load_n`, N; `voltage_exponent`, without a unit; `skin_gap_um`, um;
         `bandwidth_hz`, Hz.
     words

@@ -101,7 +101,7 @@ class _Profile:
 
 
 class Finger(_Profile):
-    """A finger's numbers on a screen, and what they rest on. `docs/scene.md`, `[finger]`, has all fields.
+    """A finger's numbers on a screen, and what they rest on. `docs/design/scenes.md`, `[finger]`, has all fields.
 
     ======================== ============================================== ====
     field                    meaning                                        unit
@@ -125,13 +125,13 @@ class Finger(_Profile):
 
 
 class Screen(_Profile):
-    """A screen: its size, its coating, the limits of its drive (`docs/scene.md`, `[screen]`)."""
+    """A screen: its size, its coating, the limits of its drive (`docs/design/scenes.md`, `[screen]`)."""
 
     kind = "screen"
 
 
 class TouchSource(_Profile):
-    """How often, how late and how reliably a touchscreen reports the finger (`docs/touch.md`)."""
+    """How often, how late and how reliably a touchscreen reports the finger (`docs/design/touch.md`)."""
 
     kind = "touch source"
 

@@ -150,7 +150,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         return _installed("xarray").Dataset(variables, coords={"t_s": times}, attrs=dict(self.settings))
 
     def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None, overwrite: bool = False) -> None:
-        """Write the columns as Parquet, in the format of `frixel play --record` (`docs/outputs.md`).
+        """Write the columns as Parquet, in the format of `frixel play --record` (`docs/design/outputs.md`).
 
         All that made the play is in the metadata of the file, so that `frixel replay` plays it again: the scene with
         its files, finger, screen, touch source, stroke, seeds, rate and versions.

@@ -29,7 +29,7 @@ SPEED_MAX_MM_S = 10_000.0
 
 
 class Scene:
-    """A scene without mistakes, for its screen and finger (`docs/scene.md`).
+    """A scene without mistakes, for its screen and finger (`docs/design/scenes.md`).
 
     Made by `load`, `parse` or `from_dict`. It can be pickled, with the files that it names.
     """

@@ -43,7 +43,7 @@ class Simulator:
     ideal
         A world without load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     leakage
-        Whether charge leaks through the skin below 250 Hz; measurements disagree (`docs/truth.md`).
+        Whether charge leaks through the skin below 250 Hz; measurements disagree (`docs/inside/evidence.md`).
     rows_per_s
         Rows of the recording a second; divides 40,000.
 

@@ -1,7 +1,7 @@
 """Studies of many simulated fingers, in pieces that processes and clusters can share.
 
 `cells` makes the pieces of a plan, `play` plays one of them, and a `Study` puts the results together. `play` is a pure
-function of a text, so that `map(sweep.play, cells)` works with processes, Dask and Slurm (`docs/scale.md`).
+function of a text, so that `map(sweep.play, cells)` works with processes, Dask and Slurm (`docs/python/scale.md`).
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
     Parameters
     ----------
     plan
-        The path of a plan's file (`docs/scale.md`), or its fields; then `scenes` may be a dictionary of scenes by the
-        names that results have, and the names of other files are those of the current folder.
+        The path of a plan's file (`docs/python/scale.md`), or its fields; then `scenes` may be a dictionary of scenes
+        by the names that results have, and the names of other files are those of the current folder.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 //! The kinds of layer, one file each: the fields in a scene file, their conversion to a record, and the kind's
-//! reference. The reference follows the kind's definition in `docs/scene.md` and `PROTOCOL.md`, and shares no code with
-//! the board.
+//! reference. The reference follows the kind's definition in `docs/design/scenes.md` and `PROTOCOL.md`, and shares no
+//! code with the board.
 
 mod bitmap;
 mod button;

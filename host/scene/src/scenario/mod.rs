@@ -11,7 +11,8 @@ use frixel_wire::fault::{Fault, State};
 use crate::compile_error::CompileError;
 use crate::fields::read_text;
 
-/// A scenario file (`docs/scenarios.md`). A host connects and plays the scene; times count from the start of the play.
+/// A scenario file (`docs/inside/scenarios.md`). A host connects and plays the scene; times count from the start of the
+/// play.
 ///
 /// Amplitudes are fractions of the board's reach in the scene, so that a scenario fits every board.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! The tables of a scenario file. The parser checks the fields, and `docs/scenarios.md` shows them.
+//! The tables of a scenario file. The parser checks the fields, and `docs/inside/scenarios.md` shows them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
 use crate::grammar::Absence::{Means, Mistake, Number};

@@ -81,7 +81,7 @@ fn one_mistake_is_one_sentence() {
 #[test]
 #[allow(clippy::disallowed_methods, reason = "the test reads the documentation")]
 fn the_documentation_has_every_word() {
-    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios.md");
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/inside/scenarios.md");
     let docs = std::fs::read_to_string(file).unwrap();
     let fields = [tables::file::ALL, tables::stroke::ALL, tables::when::ALL, tables::command::ALL, tables::fault::ALL];
     let fields = fields.concat().into_iter().chain(tables::expect::ALL.iter().copied()).map(|field| field.name);

@@ -33,7 +33,7 @@ pub fn json_schema() -> String {
     let schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "frixel scene",
-        "description": "A scene of friction, in newtons: docs/scene.md",
+        "description": "A scene of friction, in newtons: docs/design/scenes.md",
         "type": "object",
         "oneOf": scenes(),
         "definitions": definitions,

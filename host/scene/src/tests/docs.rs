@@ -1,5 +1,5 @@
-//! Tests that the examples in `docs/scene.md` compile, that its tables of fields match the parser, and that the example
-//! in `docs/touch.md` is read.
+//! Tests that the examples in `docs/design/scenes.md` compile, that its tables of fields match the parser, and that the
+//! example in `docs/design/touch.md` is read.
 
 use std::fs;
 use std::path::PathBuf;
@@ -14,8 +14,8 @@ use crate::schema::variant::{Tables, variants};
 use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, PATTERN_MS, REGION, REPEAT, START};
 use crate::{FingerProfile, Profile};
 
-const DOCS: &str = include_str!("../../../../docs/scene.md");
-const TOUCH_DOCS: &str = include_str!("../../../../docs/touch.md");
+const DOCS: &str = include_str!("../../../../docs/design/scenes.md");
+const TOUCH_DOCS: &str = include_str!("../../../../docs/design/touch.md");
 
 fn kinds() -> impl Iterator<Item = &'static str> {
     KindName::ALL.iter().map(|(word, _)| *word)
@@ -173,7 +173,7 @@ fn with_tables(docs: &str) -> String {
 
 #[test]
 fn the_tables_of_fields_are_those_of_the_parser() {
-    let path: PathBuf = scenes().join("../docs/scene.md");
+    let path: PathBuf = scenes().join("../docs/design/scenes.md");
     let held = fs::read_to_string(&path).expect("it is there");
     let made = with_tables(&held);
     golden::hold(&path, &made);
@@ -256,7 +256,7 @@ fn the_table_of_bundled_fingers_is_right() {
 #[test]
 fn the_touch_source_in_the_documents_is_read() {
     let text = TOUCH_DOCS.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("it is there");
-    let source = TouchConfig::parse(text, "docs/touch.md").expect("it reads");
+    let source = TouchConfig::parse(text, "docs/design/touch.md").expect("it reads");
     let bits = |source: TouchConfig| [source.lost_share, source.bunched_share, source.pause_rate_hz].map(f64::to_bits);
     assert_eq!(source.rate_hz.to_bits(), 120.0_f64.to_bits());
     assert_eq!(bits(source), bits(TouchConfig::REALISTIC));

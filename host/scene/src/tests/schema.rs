@@ -1,4 +1,4 @@
-//! Tests that the JSON schema agrees with the parser, and that `docs/scene.schema.json` is the generated one.
+//! Tests that the JSON schema agrees with the parser, and that `docs/design/scene.schema.json` is the generated one.
 
 use std::fs;
 use std::path::PathBuf;
@@ -64,7 +64,7 @@ pub(super) fn check_agrees(text: &str, mistakes: &[Diagnostic]) {
 
 #[test]
 fn the_schema_in_the_docs_is_the_one_that_is_made() {
-    let path: PathBuf = scenes().join("../docs/scene.schema.json");
+    let path: PathBuf = scenes().join("../docs/design/scene.schema.json");
     golden::hold(&path, &json_schema());
 }
 

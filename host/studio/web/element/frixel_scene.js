@@ -1,4 +1,4 @@
-// <frixel-scene>: map, finger and scope of a scene, for any document. docs/studio.md says how to use it.
+// <frixel-scene>: map, finger and scope of a scene, for any document. docs/design/studio.md says how to use it.
 //
 // All elements of a document share one simulated board: the scene under the pointer plays on it.
 // @ts-check

@@ -13,7 +13,9 @@ const SIMULATED = [
   "The fingers are assumed, not measured, unless a profile says that it was fitted. A real finger differs from them.",
   "What a simulator shows is no statement about the safety of a board.",
 ];
-const DOCS = "docs/studio.md of the frixel repository says what everything here is, and docs/truth.md what is known about fingers.";
+const DOCS =
+  "docs/design/studio.md of the frixel repository says what everything here is, and docs/inside/evidence.md what is " +
+  "known about fingers.";
 
 export function makeAbout() {
   const dialog = byId("about");

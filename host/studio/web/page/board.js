@@ -24,8 +24,8 @@ const WHY_NOT_ARMED = {
 };
 const WHAT_A_BOARD_IS =
   "A board is a NUCLEO-G474RE or a Raspberry Pi Pico 2 with frixel's firmware, an amplifier and a screen with an " +
-  "electrode: docs/first-board.md of the frixel repository is the way there. What this scene asks of it stands under " +
-  "“What a board needs for it”, in the tab “What is felt”.";
+  "electrode: docs/board/first-board.md of the frixel repository is the way there. What this scene asks of it stands " +
+  "under “What a board needs for it”, in the tab “What is felt”.";
 /** @type {Record<BoardState, string>} */
 const STATE_WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 

@@ -19,7 +19,7 @@ export function fingerNames() {
 }
 
 export function schema() {
-  return studio.text("docs/scene.schema.json").then((text) => JSON.parse(text));
+  return studio.text("docs/design/scene.schema.json").then((text) => JSON.parse(text));
 }
 
 /** @type {Promise<Record<string, Uint8Array<ArrayBuffer>>> | undefined} */

@@ -76,7 +76,7 @@ fn measure<'a>(carrier: &'a Carrier, from: &str, to: &str) -> &'a Measure {
 }
 
 /// With a meter that reads too little, and a supply that gives too much: at most 45 uC over both rails and from one,
-/// and below 30 V within 10 s (`docs/safety.md`).
+/// and below 30 V within 10 s (`docs/board/safety.md`).
 #[test]
 fn the_stored_charge_is_within_its_limit_for_every_reading_that_is_allowed() {
     let carrier = read().unwrap();
@@ -142,7 +142,7 @@ fn nothing_conductive_is_behind_the_electrode() {
     // 10 cm by 10 cm with earth on all of its back, and 30 pF of wire.
     let behind_f = 8.854e-12 * 0.01 / 20e-3 + 30e-12;
     assert!(behind_f < 50e-12 && ratings.contains("50 pF or less to the common without a finger"), "{behind_f}");
-    let safety = fs::read_to_string(root().join("docs/safety.md")).unwrap();
+    let safety = fs::read_to_string(root().join("docs/board/safety.md")).unwrap();
     assert!(safety.contains("within 20 mm behind") && safety.contains("**no more than 50 pF**"));
 }
 
@@ -160,7 +160,7 @@ fn the_rails_have_a_switch_of_their_own_in_front_of_the_insulation() {
 #[test]
 fn what_the_discharging_resistor_takes_is_said() {
     let carrier = read().unwrap();
-    let hardware = fs::read_to_string(root().join("docs/hardware.md")).unwrap();
+    let hardware = fs::read_to_string(root().join("docs/board/hardware.md")).unwrap();
     let series_ohm = value(&carrier, "R1") + value(&carrier, "R2");
     // Built in, and for 150 V rms (`frixel board safety`).
     for series_ohm in [series_ohm, 374e3] {

@@ -1,5 +1,5 @@
-//! Brings up a new board, step by step: `cargo run --release --bin bring-up`, described in `docs/hardware.md`. The
-//! script is `frixel_board::bring_up`; here is what it needs of this board. The person types at a terminal on the
+//! Brings up a new board, step by step: `cargo run --release --bin bring-up`, described in `docs/board/hardware.md`.
+//! The script is `frixel_board::bring_up`; here is what it needs of this board. The person types at a terminal on the
 //! ST-Link's serial port, at 2 Mbaud.
 #![no_std]
 #![no_main]

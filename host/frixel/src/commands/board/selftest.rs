@@ -37,7 +37,7 @@ pub(in crate::commands) struct SelftestArgs {
     /// Path of the board's serial port.
     #[arg(long)]
     port: String,
-    /// The board runs the program `self-test`, with wires between its pins (docs/first-board.md).
+    /// The board runs the program `self-test`, with wires between its pins (docs/board/first-board.md).
     #[arg(long)]
     wires: bool,
     /// Seconds for which the line is tested at its full rate; 0 leaves that out.
@@ -79,7 +79,7 @@ pub(super) fn run(args: &SelftestArgs) -> Result<()> {
     }
     let failed = checks.iter().filter(|check| !check.passed).count();
     if failed > 0 {
-        bail!("{failed} of the checks of {} failed; docs/hardware.md says what each part needs", args.port);
+        bail!("{failed} of the checks of {} failed; docs/board/hardware.md says what each part needs", args.port);
     }
     Ok(())
 }

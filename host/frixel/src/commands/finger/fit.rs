@@ -26,7 +26,7 @@ pub(in crate::commands) struct FitArgs {
     /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
     /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input. A header may state another unit, as in
     /// `friction_mn`. A paper's table of means, with `friction_se_n` or `friction_sd_n` and `n`, is data as well
-    /// (docs/outputs.md).
+    /// (docs/design/outputs.md).
     #[arg(value_name = "DATA.csv")]
     data: PathBuf,
     /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name
@@ -40,8 +40,8 @@ pub(in crate::commands) struct FitArgs {
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
-    /// The screen that friction was measured on: a bundled name or a screen file (docs/scene.md); without it, the
-    /// example screen. The profile holds for this screen.
+    /// The screen that friction was measured on: a bundled name or a screen file (docs/design/scenes.md); without it,
+    /// the example screen. The profile holds for this screen.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
     /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical

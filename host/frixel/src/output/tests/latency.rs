@@ -1,5 +1,5 @@
-//! How the friction error of the brick scene grows with the latency of the touch source: `docs/latency.csv` and
-//! `docs/latency.svg`.
+//! How the friction error of the brick scene grows with the latency of the touch source: `docs/inside/latency.csv` and
+//! `docs/inside/latency.svg`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ const CURVES: [(&str, bool, RGBColor); 6] = [
 ];
 
 fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/inside").join(name)
 }
 
 /// The stroke of a curve; people differ from seed to seed.
@@ -67,7 +67,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
 
 fn curves() -> Vec<Vec<Errors>> {
     let rig = RigConfig::default();
-    let scene = scene_file::load(&path("../scenes/brick.toml")).unwrap();
+    let scene = scene_file::load(&path("../../scenes/brick.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     CURVES
         .iter()

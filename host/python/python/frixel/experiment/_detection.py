@@ -87,7 +87,7 @@ def perceptual_finger(
     screen: str = "example",
     date: datetime.date | None = None,
 ) -> Finger:
-    """The profile of a finger whose detection threshold is known, and no force (`docs/scene.md`, `[finger]`).
+    """The profile of a finger whose detection threshold is known, and no force (`docs/design/scenes.md`, `[finger]`).
 
     Parameters
     ----------

@@ -57,7 +57,8 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
         (Some(reason), _) => bail!("the board at {port} has ended the self-test: {}", reason.trim_end_matches('.')),
         (None, 0) => print_line("Passed."),
         (None, failed) => bail!(
-            "{failed} of the measurements of {port} are out of their range; docs/first-board.md says what each means"
+            "{failed} of the measurements of {port} are out of their range; docs/board/first-board.md says what each \
+             means"
         ),
     }
 }
@@ -81,7 +82,7 @@ impl Host {
             if is_first && (begun.elapsed() >= FIRST_LINE_MAX || lines == SCRIPT_LINES_MAX) {
                 bail!(
                     "the board at {port} does not run the self-test: flash it with `cargo run --release --bin \
-                     self-test` in firmware/board-nucleo-g474re, or press its reset button (docs/first-board.md)"
+                     self-test` in firmware/board-nucleo-g474re, or press its reset button (docs/board/first-board.md)"
                 );
             }
             if lines == SCRIPT_LINES_MAX {

@@ -242,7 +242,7 @@ fn intervals_of_200_people_and_20_seeds_contain_the_truth() {
     assert!(tally.refused() <= 0.02, "{:#?}", tally.refusals);
 }
 
-/// The table of `docs/truth.md`: error of a fit over the number of strokes.
+/// The table of `docs/inside/evidence.md`: error of a fit over the number of strokes.
 #[test]
 #[ignore = "minutes: cargo xtask soak fit"]
 fn errors_fall_with_the_root_of_the_number_of_strokes() {
