@@ -20,10 +20,16 @@ use support::hex::{from_hex, to_hex};
 use support::{samples, variants};
 
 const PROTOCOL: &str = include_str!("../PROTOCOL.md");
+const FAULTS: &str = include_str!("../../../docs/board/faults.md");
 
-/// Rows of the first table after this line, their cells without spaces and backticks around.
+/// Rows of the protocol's first table after this line, their cells without spaces and backticks around.
 fn table(line: &str) -> Vec<Vec<&'static str>> {
-    let (_, after) = PROTOCOL.split_once(&format!("\n{line}\n")).expect(line);
+    table_of(PROTOCOL, line)
+}
+
+/// Rows of a page's first table after this line.
+fn table_of(page: &'static str, line: &str) -> Vec<Vec<&'static str>> {
+    let (_, after) = page.split_once(&format!("\n{line}\n")).expect(line);
     let rows = after.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     rows.skip(2)
         .map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().trim_matches('`')).collect())
@@ -32,7 +38,11 @@ fn table(line: &str) -> Vec<Vec<&'static str>> {
 
 /// Number and name in the table of this enum.
 fn numbered(name: &str) -> Vec<(usize, &'static str)> {
-    table(&format!("### `{name}`")).iter().map(|row| (row[0].parse().unwrap(), row[1])).collect()
+    numbers_and_names(&table(&format!("### `{name}`")))
+}
+
+fn numbers_and_names(rows: &[Vec<&'static str>]) -> Vec<(usize, &'static str)> {
+    rows.iter().map(|row| (row[0].parse().unwrap(), row[1])).collect()
 }
 
 /// Number and name in the list of fields.
@@ -138,6 +148,20 @@ fn notices_have_the_bits_that_the_table_says() {
     ];
     assert_eq!(page, code);
     assert_eq!(page.len(), notice::SENTENCES.len());
+}
+
+/// The page of faults has a row for each number that the protocol has, and for each refusal to arm or to play.
+#[test]
+fn the_page_of_faults_has_all_that_a_board_reports() {
+    let on_page = |heading: &str| numbers_and_names(&table_of(FAULTS, heading));
+    assert_eq!(on_page("## Faults"), numbered("Fault"));
+    assert_eq!(on_page("## Resets"), numbered("ResetCause"));
+    assert_eq!(on_page("## Notices"), numbered("Notices"));
+    let commands = table("### `Command`");
+    let starts = commands.iter().filter(|row| ["Arm", "Play"].contains(&row[1]));
+    let refusals: Vec<&str> = starts.flat_map(|row| row[4].split([',', ' ', '`'])).collect();
+    let refused: Vec<_> = numbered("Refusal").into_iter().filter(|(_, name)| refusals.contains(name)).collect();
+    assert_eq!(on_page("## Refusals to arm or to play"), refused);
 }
 
 /// The fields that a table names, in order, are those of the value.
