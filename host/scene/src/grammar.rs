@@ -1,6 +1,6 @@
 //! The grammar of a scene file: fields with their ranges and meanings, and the sets of fields that can occur together.
 
-/// A field of a table, as used by the parser, by editors, and by `docs/design/scenes.md`.
+/// A field of a table, as used by the parser, by editors, and by `docs/design/scene-reference.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldSpec {
     pub(crate) name: &'static str,

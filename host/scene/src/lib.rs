@@ -1,7 +1,8 @@
 //! Scenes: TOML files written by people, checked and compiled to the program that a board plays.
 //!
-//! `docs/design/scenes.md` is the reference of the file format. [`Scene::parse`] reads a file. [`compile`] checks it
-//! against the board's limits and returns a [`Program`]. Both report all mistakes at once, each with line and column.
+//! `docs/design/scenes.md` explains the file format, and `scene-reference.md` beside it lists every key.
+//! [`Scene::parse`] reads a file. [`compile`] checks it against the board's limits and returns a [`Program`]. Both
+//! report all mistakes at once, each with line and column.
 //!
 //! The input is the text of a scene file, the bytes of the files that it names ([`Files`]), and the limits of a board.
 //! The output is the bytes that a board plays, with information for the scene's designer.

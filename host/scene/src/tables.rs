@@ -1,5 +1,5 @@
 //! The tables that belong to no kind of layer, and the parts that the kinds share. The parser checks the fields;
-//! [`super::json_schema`] and `docs/design/scenes.md` show them.
+//! [`super::json_schema`] and `docs/design/scene-reference.md` show them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
 use frixel_layers::range;

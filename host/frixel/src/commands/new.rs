@@ -110,7 +110,7 @@ fn relative(from: &Path, to: &Path) -> PathBuf {
 fn head() -> String {
     let Screen { width_mm, height_mm, .. } = Screen::example();
     format!(
-        "# docs/design/scenes.md has every field. Lengths are in mm from the top left corner of the screen.\n\
+        "# docs/design/scene-reference.md has every key. Lengths are in mm from the top left corner of the screen.\n\
          # Without [screen] and [finger] the scene is meant for the example screen, {width_mm} by {height_mm} mm, and the\n\
          # example finger. Fractions are parts of what that finger can be given above its natural friction.\n\
          version = 1\n"

@@ -101,7 +101,7 @@ class _Profile:
 
 
 class Finger(_Profile):
-    """A finger's numbers on a screen, and what they rest on. `docs/design/scenes.md`, `[finger]`, has all fields.
+    """A finger's numbers on a screen, and what they rest on; `docs/design/scene-reference.md` has all fields.
 
     ======================== ============================================== ====
     field                    meaning                                        unit
@@ -125,7 +125,7 @@ class Finger(_Profile):
 
 
 class Screen(_Profile):
-    """A screen: its size, its coating, the limits of its drive (`docs/design/scenes.md`, `[screen]`)."""
+    """A screen: its size, its coating, the limits of its drive (`docs/design/scene-reference.md`, `[screen]`)."""
 
     kind = "screen"
 

@@ -47,7 +47,7 @@ const PITCH: FieldSpec = FieldSpec::new(
     "pitch_mm",
     Holds::NumberOrAuto(PITCH_MM),
     Means("`\"auto\"`"),
-    "spacing of the samples that the board plays; `\"auto\"`: the finest that fits, see below",
+    "spacing of the samples that the board plays; `\"auto\"`: the finest that fits the board",
 );
 const LEVELS: FieldSpec = word(
     "levels",

@@ -1,16 +1,16 @@
-//! Tests that the examples in `docs/design/scenes.md` compile, that its tables of fields match the parser, and that the
-//! example in `docs/design/touch.md` is read.
+//! Tests that the examples in `docs/design/scenes.md` compile, that `docs/design/scene-reference.md` is made from the
+//! parser, and that the example in `docs/design/touch.md` is read.
 
-use std::fs;
 use std::path::PathBuf;
 
 use frixel_hil_sim::TouchConfig;
 use frixel_testkit::{examples, golden};
 
 use super::*;
-use crate::grammar::{Absence, FieldSpec, Holds, KnownField, Range};
+use crate::grammar::{Absence, AmountFields, FieldSpec, Holds, KnownField, Range};
 use crate::kinds::KindName;
 use crate::schema::variant::{Tables, variants};
+use crate::tables::LOW;
 use crate::tables::layer::{ABOVE, BLEND, GAIN, KIND, LIVE, NAME, PATTERN_MS, REGION, REPEAT, START};
 use crate::{FingerProfile, Profile};
 
@@ -58,29 +58,29 @@ fn known(before: &str, after: &str, key: &str) -> Vec<KnownField> {
     all
 }
 
-/// The headings with a table of fields below them, and the fields.
+/// The headings of the reference, each one also a heading of the guide, and the fields.
 fn documented() -> Vec<(String, Vec<KnownField>)> {
     let mut all = Vec::new();
     for table in ["screen", "finger", "drive", "carrier", "touch", "design"] {
-        all.push((format!("### `[{table}]`"), known(&format!("version = 1\n{table} = {{"), "}", table)));
+        all.push((format!("`[{table}]`"), known(&format!("version = 1\n{table} = {{"), "}", table)));
     }
-    all.push(("#### `coating`".to_owned(), known("version = 1\nscreen = { coating = [{", "}] }", "coating")));
+    all.push(("`coating`".to_owned(), known("version = 1\nscreen = { coating = [{", "}] }", "coating")));
     let is_common = |known: &KnownField| COMMON.iter().any(|common| common.name == known.field.name);
     let layer = |kind: &str| known(&format!("layer = [{{ kind = \"{kind}\""), "}]", "layer");
-    all.push(("## Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
-    all.push(("### Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
-    all.push(("### Repeats".to_owned(), known("layer = [{ kind = \"constant\", repeat = {", "} }]", "repeat")));
+    all.push(("Layers".to_owned(), layer("constant").into_iter().filter(is_common).collect()));
+    all.push(("Regions".to_owned(), known("layer = [{ kind = \"constant\", region = {", "} }]", "region")));
+    all.push(("Repeats".to_owned(), known("layer = [{ kind = \"constant\", repeat = {", "} }]", "repeat")));
     for kind in kinds() {
         let own = layer(kind).into_iter().filter(|known| !is_common(known)).collect();
-        all.push((format!("### `{kind}`"), own));
+        all.push((format!("`{kind}`"), own));
     }
-    all.push(("#### Bursts".to_owned(), known("layer = [{ kind = \"vibration\", burst = {", "} }]", "burst")));
+    all.push(("Bursts".to_owned(), known("layer = [{ kind = \"vibration\", burst = {", "} }]", "burst")));
     all
 }
 
-/// A table in Markdown. The columns of defaults and ranges are omitted if they would be empty.
+/// A table in Markdown. The columns of units, ranges and defaults are omitted if they would be empty.
 fn markdown(fields: &[KnownField]) -> String {
-    let mut rows: Vec<[String; 4]> = vec![["field", "meaning", "default", "range"].map(str::to_owned)];
+    let mut rows: Vec<[String; 5]> = vec![["key", "unit", "range", "default", "meaning"].map(str::to_owned)];
     let mut fields: Vec<FieldSpec> = fields.iter().map(|known| known.field).collect();
     while let Some(first) = fields.first().copied() {
         // The three units of an amount share one line.
@@ -89,15 +89,17 @@ fn markdown(fields: &[KnownField]) -> String {
         fields = others;
         alike.sort_by_key(|field| ["_n", "_fraction", "_factor", "_mm"].map(|unit| !field.name.ends_with(unit)));
         let names: Vec<_> = alike.iter().map(|field| format!("`{}`", field.name)).collect();
+        let mut units: Vec<&str> = alike.iter().map(unit).filter(|unit| !unit.is_empty()).collect();
+        units.dedup();
         let default = alike.iter().map(default).find(|default| !default.is_empty()).unwrap_or_default();
         // A length in pixels has the range of the same length in millimetres.
         let lengths = ["_mm", "_px"].map(|unit| alike.iter().filter(|field| field.name.ends_with(unit)).count());
         let is_one = alike.len() == 1 || (alike.len() == 2 && lengths == [1, 1]);
         let range = if is_one { range(&alike[0]) } else { String::new() };
-        rows.push([names.join(", or "), first.meaning.to_owned(), default, range]);
+        rows.push([names.join(", "), units.join(", "), range, default, first.meaning.replace("](#", "](scenes.md#")]);
     }
-    let shown: Vec<usize> = (0..4).filter(|column| rows.iter().skip(1).any(|row| !row[*column].is_empty())).collect();
-    let line = |row: &[String; 4]| {
+    let shown: Vec<usize> = (0..5).filter(|column| rows.iter().skip(1).any(|row| !row[*column].is_empty())).collect();
+    let line = |row: &[String; 5]| {
         let cells = shown
             .iter()
             .map(|column| if row[*column].is_empty() { " ".to_owned() } else { format!(" {} ", row[*column]) });
@@ -117,19 +119,32 @@ fn default(field: &FieldSpec) -> String {
     }
 }
 
+/// The numbers that a field takes.
+fn numbers(field: &FieldSpec) -> Option<Range> {
+    match field.holds {
+        Holds::Number(range)
+        | Holds::Whole(range)
+        | Holds::NumberOrAuto(range)
+        | Holds::Numbers(range)
+        | Holds::Interval(range)
+        | Holds::Pairs(range) => Some(range),
+        _ => None,
+    }
+}
+
+/// The unit, or what the number is a share of.
+fn unit(field: &FieldSpec) -> &'static str {
+    let pure = ["fraction", "factor"].into_iter().find(|pure| field.name.ends_with(&format!("_{pure}")));
+    let unit = || numbers(field).and_then(|range| range.unit.split(',').next()).unwrap_or_default();
+    pure.unwrap_or_else(unit).trim()
+}
+
 fn range(field: &FieldSpec) -> String {
-    let (Holds::Number(range)
-    | Holds::Whole(range)
-    | Holds::NumberOrAuto(range)
-    | Holds::Numbers(range)
-    | Holds::Interval(range)
-    | Holds::Pairs(range)) = field.holds
-    else {
-        return String::new();
-    };
-    let Range { min, max, unit } = range;
+    let Some(Range { min, max, unit }) = numbers(field) else { return String::new() };
     let whole = if matches!(field.holds, Holds::Whole(_)) { ", whole" } else { "" };
-    format!("{} to {}{unit}{whole}", written(min), written(max))
+    // A unit may be followed by what else limits the number.
+    let limit = unit.find(',').map_or("", |place| &unit[place..]);
+    format!("{} to {}{whole}{limit}", written(min), written(max))
 }
 
 /// A number, with commas between thousands from 10,000 on, and as a power of ten from 1e6 on.
@@ -147,43 +162,55 @@ fn written(number: f64) -> String {
     format!("{sign}{}", grouped.collect::<String>())
 }
 
-/// The documentation with its tables of fields rewritten.
-fn with_tables(docs: &str) -> String {
-    let mut tables = documented();
-    let mut text = String::new();
-    let mut heading = String::new();
-    let mut lines = docs.lines().peekable();
-    while let Some(line) = lines.next() {
-        if line.starts_with('#') {
-            line.clone_into(&mut heading);
-        }
-        let found = tables.iter().position(|(below, _)| *below == heading);
-        match found.filter(|_| line.starts_with("| field |")) {
-            Some(place) => {
-                text.push_str(&markdown(&tables.remove(place).1));
-                while lines.next_if(|line| line.starts_with('|')).is_some() {}
-            }
-            None => text.extend([line, "\n"]),
-        }
+/// What stands above the tables of the reference.
+fn reference_head() -> String {
+    let AmountFields { newtons, fraction, factor } = LOW;
+    let [newtons, fraction, factor] = [newtons, fraction, factor].map(|field| range(&field));
+    format!(
+        "\
+# Scene files: every key
+
+Written by `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` from the parser. The guide with examples is
+[scenes.md](scenes.md); `frixel schema` prints the same for editors.
+
+Keys without a default must be given, or belong to one choice of several. The ending of a key is its unit. An amount of
+friction has three keys, of which a layer uses one:
+
+| ending | unit | range |
+|---|---|---|
+| `_n` | N, above natural friction or from zero: [`above`](scenes.md#what-can-be-reached) | {newtons} |
+| `_fraction` | share of the most that the drive can add | {fraction} |
+| `_factor` | factor, with `blend = \"multiply\"` | {factor} |
+
+A length in px needs a [design size](scenes.md#design), and has the range of the length in mm. Angles run from x towards
+y: 0 is along x, 90 along y.
+"
+    )
+}
+
+/// The reference of all keys, each table with a link to its section in the guide.
+fn reference() -> String {
+    let mut page = reference_head();
+    for (heading, fields) in documented() {
+        let is_its = |line: &str| line.starts_with('#') && line.trim_start_matches(['#', ' ']) == heading;
+        assert!(DOCS.lines().any(is_its), "the guide has no heading {heading}");
+        let anchor = heading.to_lowercase().replace(['`', '[', ']'], "");
+        page += &format!("\n## {heading}\n\n[Guide](scenes.md#{anchor})\n\n{}", markdown(&fields));
     }
-    let missing: Vec<_> = tables.iter().map(|(heading, _)| heading).collect();
-    assert!(missing.is_empty(), "no table of fields is below {missing:?}");
-    text
+    page
 }
 
 #[test]
-fn the_tables_of_fields_are_those_of_the_parser() {
-    let path: PathBuf = scenes().join("../docs/design/scenes.md");
-    let held = fs::read_to_string(&path).expect("it is there");
-    let made = with_tables(&held);
-    golden::hold(&path, &made);
+fn the_reference_is_made_from_the_parser() {
+    let path: PathBuf = scenes().join("../docs/design/scene-reference.md");
+    golden::hold(&path, &reference());
 }
 
 #[test]
 fn a_default_is_what_a_file_without_the_field_means() {
     let mut compared = 0;
     for (heading, fields) in documented() {
-        let Some(kind) = heading.strip_prefix("### `").and_then(|rest| rest.strip_suffix('`')) else { continue };
+        let Some(kind) = heading.strip_prefix('`').and_then(|rest| rest.strip_suffix('`')) else { continue };
         let table = kind.trim_matches(['[', ']']);
         for known in fields {
             let FieldSpec { name, absence, .. } = known.field;
