@@ -71,18 +71,24 @@ fn modules_of(file: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// The folders of the repository that documents name.
+const TOPS: [&str; 8] = ["docs", "firmware", "fuzz", "hardware", "hil-sim", "host", "model", "xtask"];
+
+/// The pages of `docs`, and their texts.
+fn pages() -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    files_below(&root().join("docs"), "md", &mut files);
+    files.into_iter().map(|file| (file.clone(), fs::read_to_string(file).unwrap())).collect()
+}
+
 /// Names in backticks that begin with a folder of the repository.
 #[test]
 fn every_file_that_a_document_names_exists() {
-    let mut documents = Vec::new();
-    files_below(&root().join("docs"), "md", &mut documents);
     let mut count = 0;
-    for document in documents {
-        let text = fs::read_to_string(&document).unwrap();
+    for (document, text) in pages() {
         for name in text.split('`') {
             let name = name.split("::").next().unwrap_or_default();
-            let is_path =
-                ["firmware/", "hil-sim/", "host/", "model/", "xtask/"].iter().any(|top| name.starts_with(top));
+            let is_path = name.split_once('/').is_some_and(|(top, _)| TOPS.contains(&top));
             if is_path && !name.contains(['*', ' ', '\n']) && !name.contains("KIND") && !name.contains("/target/") {
                 assert!(root().join(name).exists(), "{} names {name}, which does not exist", document.display());
                 count += 1;
@@ -90,4 +96,55 @@ fn every_file_that_a_document_names_exists() {
         }
     }
     assert!(count > 100, "{count}");
+}
+
+/// The architecture also names sources by the ends of their paths, such as `pins.mjs`.
+#[test]
+fn every_source_that_the_architecture_names_exists() {
+    let page = fs::read_to_string(root().join("docs/inside/architecture.md")).unwrap();
+    let mut count = 0;
+    for ending in ["rs", "mjs", "js", "ts", "py"] {
+        let mut files = Vec::new();
+        for top in TOPS {
+            files_below(&root().join(top), ending, &mut files);
+        }
+        let is_name = |name: &&str| name.ends_with(&format!(".{ending}")) && !name.contains(['*', ' ', '\n']);
+        for name in page.split('`').filter(is_name).filter(|name| !name.contains("KIND")) {
+            assert!(
+                files.iter().any(|file| file.ends_with(name)),
+                "architecture.md names {name}, which does not exist"
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 50, "{count}");
+}
+
+/// Links of pages to files of the repository, and to headings in them.
+#[test]
+fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
+    let mut count = 0;
+    for (document, text) in pages() {
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if link.contains("://") {
+                continue;
+            }
+            let (path, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let file = if path.is_empty() { document.clone() } else { document.with_file_name(path) };
+            assert!(file.exists(), "{} links to {link}, which does not exist", document.display());
+            let has_anchor =
+                anchor.is_empty() || anchors(&fs::read_to_string(&file).unwrap()).any(|name| name == anchor);
+            assert!(has_anchor, "{} links to {link}, which is no heading there", document.display());
+            count += 1;
+        }
+    }
+    assert!(count > 200, "{count}");
+}
+
+/// The anchors of a page's headings, as GitHub makes them.
+fn anchors(text: &str) -> impl Iterator<Item = String> + '_ {
+    text.lines().filter(|line| line.starts_with('#')).map(|line| {
+        let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+        words.chars().filter(|letter| letter.is_alphanumeric() || ['-', '_'].contains(letter)).collect()
+    })
 }
