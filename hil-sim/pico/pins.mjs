@@ -3,6 +3,10 @@
 //
 // A pin that the chip does not drive has the level that the carrier's resistor gives it. What happens on the wires
 // becomes events with the time at which it happened; the chips themselves are simulated in `frixel-hil-sim`.
+//
+// In rp2040js pads come up without input enable, a driven pin does not read back, and an ADC that converts all the time
+// gives a result up to 2 us old. Here pads are as after a reset, driven levels are inputs, too, and the ADC gives the
+// voltage of the tick in which it is read.
 
 import { EVENT } from "./protocol.mjs";
 

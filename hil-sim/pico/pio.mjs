@@ -2,7 +2,7 @@
 //
 // rp2040js runs them from `setTimeout`, a thousand instructions at a time, without regard to the core's clock, to clock
 // dividers and to delays (https://github.com/wokwi/rp2040js/issues/106). Here each machine has the cycle of the core at
-// which its next instruction is due.
+// which its next instruction is due. A forced instruction ends a wait, which it does not in rp2040js.
 
 /** Offsets of the registers SM0_INSTR to SM3_INSTR, and the distance between two machines (RP2040 datasheet, 3.7). */
 const SM0_INSTR = 0xd8;

@@ -1,4 +1,7 @@
 // The watchdog: its clock, and what it does when it fires.
+//
+// In rp2040js it counts microseconds, whatever its clock is. Here it counts the reference clock, divided as it is told;
+// a crystal that stops stops it, unless it counts the ring oscillator.
 
 /** Addresses of peripherals, as rp2040js keys them. */
 const WATCHDOG = 0x40058;

@@ -120,6 +120,23 @@ fn every_source_that_the_architecture_names_exists() {
     assert!(count > 50, "{count}");
 }
 
+/// All documents together have at most 400 kB, and no line above 160 characters but in tables.
+#[test]
+fn documents_are_short() {
+    let mut files = Vec::new();
+    files_below(&root(), "md", &mut files);
+    // What tests compare, and the packages of others.
+    files.retain(|file| !file.iter().any(|part| ["corpus", "target", ".venv"].iter().any(|name| part == *name)));
+    let mut bytes = 0;
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        bytes += text.len();
+        let long = text.lines().find(|line| !line.starts_with('|') && line.chars().count() > 160);
+        assert!(long.is_none(), "{}: more than 160 characters: {}", file.display(), long.unwrap_or_default());
+    }
+    assert!(bytes <= 400_000, "{bytes}");
+}
+
 /// Links of pages to files of the repository, and to headings in them.
 #[test]
 fn every_link_of_a_document_leads_to_a_file_and_a_heading() {

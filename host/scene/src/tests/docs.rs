@@ -170,8 +170,8 @@ fn reference_head() -> String {
         "\
 # Scene files: every key
 
-Written by `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` from the parser. The guide with examples is
-[scenes.md](scenes.md); `frixel schema` prints the same for editors.
+Written by `FRIXEL_BLESS=1 cargo test -p frixel-scene --lib docs` from the parser. [scenes.md](scenes.md), the guide,
+has the same headings, with examples; `frixel schema` prints the same for editors.
 
 Keys without a default must be given, or belong to one choice of several. The ending of a key is its unit. An amount of
 friction has three keys, of which a layer uses one:
@@ -188,14 +188,13 @@ y: 0 is along x, 90 along y.
     )
 }
 
-/// The reference of all keys, each table with a link to its section in the guide.
+/// The reference of all keys.
 fn reference() -> String {
     let mut page = reference_head();
     for (heading, fields) in documented() {
         let is_its = |line: &str| line.starts_with('#') && line.trim_start_matches(['#', ' ']) == heading;
         assert!(DOCS.lines().any(is_its), "the guide has no heading {heading}");
-        let anchor = heading.to_lowercase().replace(['`', '[', ']'], "");
-        page += &format!("\n## {heading}\n\n[Guide](scenes.md#{anchor})\n\n{}", markdown(&fields));
+        page += &format!("\n## {heading}\n\n{}", markdown(&fields));
     }
     page
 }
