@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use frixel_felt::fidelity::Fidelity;
+use frixel_felt::fidelity::{Fidelity, Goal};
 use frixel_felt::judge::{NATURAL_NOISE_RMS_N, weber_steps_safe};
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ pub(super) struct Metric {
     factor: f64,
     value: fn(&Fidelity) -> Option<f64>,
     human: fn() -> Option<Human>,
-    goal: Option<Goal>,
+    goal: Option<Limit>,
 }
 
 /// What a person notices.
@@ -35,18 +35,18 @@ pub struct Human {
 }
 
 /// What a display is to reach, for features that are as large as its touch source needs and strokes with a median speed
-/// of at most 100 mm/s (`docs/design/touch.md`).
+/// of at most 100 mm/s: a number of [`Goal::SLOW`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Goal {
+pub enum Limit {
     /// The number is to be at most so large.
     AtMost(f64),
     /// The number is to be at least so large.
     AtLeast(f64),
 }
 
-impl Goal {
-    /// Whether a value reaches the goal.
+impl Limit {
+    /// Whether a value is within the limit.
     pub fn is_met_by(self, value: f64) -> bool {
         match self {
             Self::AtMost(limit) => value <= limit,
@@ -72,7 +72,7 @@ pub struct MetricScore {
     /// What a person notices; absent where it is not known.
     pub human: Option<Human>,
     /// What a display is to reach; absent where there is no goal.
-    pub goal: Option<Goal>,
+    pub goal: Option<Limit>,
 }
 
 impl Metric {
@@ -133,9 +133,12 @@ pub(crate) fn metric_keys() -> impl Iterator<Item = &'static str> {
 }
 
 pub(super) const METRICS: [Metric; 14] = [
-    Metric { goal: Some(Goal::AtMost(0.25)), ..Metric::new("error", "error, 0 to 400 Hz", |fidelity| fidelity.error) },
     Metric {
-        goal: Some(Goal::AtLeast(0.9)),
+        goal: Some(Limit::AtMost(Goal::SLOW.error_max)),
+        ..Metric::new("error", "error, 0 to 400 Hz", |fidelity| fidelity.error)
+    },
+    Metric {
+        goal: Some(Limit::AtLeast(Goal::SLOW.correlation_min)),
         ..Metric::new("correlation", "correlation, 0 to 400 Hz", |fidelity| fidelity.correlation)
     },
     Metric::new("error_below_40_hz", "error below 40 Hz", |fidelity| fidelity.error_below_40_hz),
@@ -188,7 +191,7 @@ pub(super) const METRICS: [Metric; 14] = [
     },
     Metric {
         unit: "dB",
-        goal: Some(Goal::AtMost(6.0)),
+        goal: Some(Limit::AtMost(Goal::SLOW.spurious_over_noise_max_db)),
         ..Metric::new("spurious_over_noise_db", "worst third octave of it", |fidelity| fidelity.spurious_over_noise_db)
     },
 ];
