@@ -1,6 +1,6 @@
 //! What a score says, in a sentence.
 
-use frixel_felt::judge::NAMED_MAX;
+use frixel_felt::judge::{NAMED_MAX, Verdict};
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::{LayerScore, LevelScore, Score, Verdicts};
@@ -76,20 +76,21 @@ fn titles(layers: &[&LayerScore]) -> String {
 
 /// Layers by the verdict of the only finger.
 fn by_verdict(layers: &[&LayerScore]) -> String {
-    let of_verdict = |verdict: &str| {
-        let layers = layers.iter().copied().filter(|layer| word(&layer.simulated_fingers) == verdict);
+    let of_verdict = |verdict: Verdict| {
+        let layers = layers.iter().copied().filter(|layer| verdict_of_one(&layer.simulated_fingers) == verdict);
         let layers = ordered(layers);
-        (!layers.is_empty()).then(|| format!("{verdict}: {}", titles(&layers)))
+        (!layers.is_empty()).then(|| format!("{}: {}", verdict.words(), titles(&layers)))
     };
-    ["not noticed", "maybe", "unknown"].into_iter().filter_map(of_verdict).collect::<Vec<String>>().join("; ")
+    let verdicts = [Verdict::NotFelt, Verdict::NearThreshold, Verdict::Unknown];
+    verdicts.into_iter().filter_map(of_verdict).collect::<Vec<String>>().join("; ")
 }
 
-/// The verdict of the only finger.
-fn word(verdicts: &Verdicts) -> &'static str {
+/// The verdict of the only finger, which does not surely notice it.
+fn verdict_of_one(verdicts: &Verdicts) -> Verdict {
     match *verdicts {
-        Verdicts { felt_by_some: 1.., .. } => "maybe",
-        Verdicts { unknown: 1.., .. } => "unknown",
-        _ => "not noticed",
+        Verdicts { felt_by_some: 1.., .. } => Verdict::NearThreshold,
+        Verdicts { unknown: 1.., .. } => Verdict::Unknown,
+        _ => Verdict::NotFelt,
     }
 }
 
@@ -147,7 +148,6 @@ fn shortened(mut parts: Vec<String>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use frixel_felt::judge::Verdict;
     use frixel_hil_sim::TouchConfig;
     use frixel_scene::LayerNumber;
 
@@ -213,10 +213,10 @@ mod tests {
         let sentence = |felt| score(1, bars(1, felt), Vec::new()).sentence();
         let by = "noticed by the simulated finger";
         assert_eq!(sentence([1, 1]), format!("2 of 2 layers are {by}"));
-        assert_eq!(sentence([1, 0]), format!("1 of 2 layers is {by}; not noticed: layer 2 \"bar 2\""));
+        assert_eq!(sentence([1, 0]), format!("1 of 2 layers is {by}; not felt: layer 2 \"bar 2\""));
         let seldom = score(8, bars(7, [7, 7]), Vec::new()).sentence();
         assert_eq!(seldom, "2 of 2 layers are noticed by those of 8 simulated fingers that touched them");
-        let none = format!("0 of 2 layers are {by}; not noticed: ");
+        let none = format!("0 of 2 layers are {by}; not felt: ");
         assert_eq!(sentence([0, 0]), format!("{none}layer 1 \"bar 1\" and layer 2 \"bar 2\""));
     }
 
@@ -246,7 +246,7 @@ mod tests {
         let detents = score(1, (1..).zip(contrasts).map(detent).collect(), Vec::new());
         assert_eq!(
             detents.sentence(),
-            "3 of 9 layers are noticed by the simulated finger; not noticed: layer 5.9 \"detent 9\" with 2 more copies; \
+            "3 of 9 layers are noticed by the simulated finger; not felt: layer 5.9 \"detent 9\" with 2 more copies; \
              maybe: layer 5.5 \"detent 5\" with 2 more copies"
         );
         let (least, copies) = detents.layer_rows().next().unwrap();

@@ -139,7 +139,7 @@ def score(
 
     >>> plate = {"kind": "constant", "friction_fraction": 0.5}
     >>> score({"layer": [plate]}, strokes=1, seeds=1, seconds=0.5).verdict
-    '0 of 1 layer is noticed by the simulated finger; not noticed: layer 1 (constant)'
+    '0 of 1 layer is noticed by the simulated finger; not felt: layer 1 (constant)'
     """
     scene = Scene.of(scene)
     if screen is not None:
