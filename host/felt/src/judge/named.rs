@@ -3,10 +3,10 @@
 use frixel_scene::{LayerTitle, Program, fold_copies};
 
 /// Largest number of layers that a sentence names; the others are counted.
-pub const NAMED_MAX: usize = 3;
+const NAMED_MAX: usize = 3;
 
-/// A list of at most [`NAMED_MAX`] names, and how many more there are.
-pub(crate) fn named(names: &[String]) -> String {
+/// A list of at most three names, and how many more there are.
+pub fn named(names: &[String]) -> String {
     let list = names.get(..NAMED_MAX).unwrap_or(names).join(", ");
     match names.len().saturating_sub(NAMED_MAX) {
         0 => list,

@@ -1,6 +1,6 @@
 //! What a score says, in a sentence.
 
-use frixel_felt::judge::{NAMED_MAX, Verdict};
+use frixel_felt::judge::{Verdict, named};
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::{LayerScore, LevelScore, Score, Verdicts};
@@ -12,7 +12,7 @@ impl Score {
         let alike = told_apart(&levels.collect::<Vec<_>>(), self.simulated_fingers);
         let untouched: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
         let untouched = (!self.layers.is_empty() && !untouched.is_empty())
-            .then(|| format!("no stroke says anything about {}", listed(fold_copies(&untouched))));
+            .then(|| format!("no stroke says anything about {}", named(&fold_copies(&untouched))));
         [Some(self.touched() + &self.noticed()), alike, untouched]
             .into_iter()
             .flatten()
@@ -71,7 +71,7 @@ fn ordered<'s>(layers: impl IntoIterator<Item = &'s LayerScore>) -> Vec<&'s Laye
 }
 
 fn titles(layers: &[&LayerScore]) -> String {
-    listed(fold_copies(&layers.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
+    named(&fold_copies(&layers.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
 }
 
 /// Layers by the verdict of the only finger.
@@ -104,7 +104,7 @@ fn by_count(layers: &[&LayerScore], fingers: usize) -> String {
             copies.iter().zip(copies.iter().skip(1)).all(|(one, next)| one.simulated_fingers == next.simulated_fingers);
         format!("{} by {least}{}", titles(copies), if is_same { "" } else { " at least" })
     });
-    listed(parts.collect())
+    named(&parts.collect::<Vec<String>>())
 }
 
 /// How many fingers notice something, of those that touched it.
@@ -115,35 +115,13 @@ fn count(verdicts: &Verdicts, fingers: usize) -> String {
 
 fn told_apart(levels: &[&LevelScore], fingers: usize) -> Option<String> {
     let first = |titles: &[LayerTitle]| titles.first().map(ToString::to_string).unwrap_or_default();
-    let pair = |level: &LevelScore| format!("{} and {}", first(&level.lower), first(&level.higher));
-    if fingers == 1 {
-        let pairs: Vec<String> = levels.iter().map(|level| pair(level)).collect();
-        return (!pairs.is_empty()).then(|| format!("not surely told apart: {}", alternatives(pairs)));
-    }
-    let by = |level: &&LevelScore| format!("{} by {}", pair(level), count(&level.simulated_fingers, fingers));
-    let pairs: Vec<String> = levels.iter().map(by).collect();
-    (!pairs.is_empty()).then(|| format!("told apart: {}", alternatives(pairs)))
-}
-
-/// A list as a sentence has it.
-fn listed(parts: Vec<String>) -> String {
-    let mut parts = shortened(parts);
-    let last = parts.pop().unwrap_or_default();
-    if parts.is_empty() { last } else { format!("{} and {last}", parts.join(", ")) }
-}
-
-/// A list of pairs, each of which has an *and* of its own.
-fn alternatives(parts: Vec<String>) -> String {
-    shortened(parts).join(", ")
-}
-
-fn shortened(mut parts: Vec<String>) -> Vec<String> {
-    if parts.len() > NAMED_MAX {
-        let more = parts.len() - (NAMED_MAX - 1);
-        parts.truncate(NAMED_MAX - 1);
-        parts.push(format!("{more} more"));
-    }
-    parts
+    let pair = |level: &&LevelScore| {
+        let pair = format!("{} and {}", first(&level.lower), first(&level.higher));
+        if fingers == 1 { pair } else { format!("{pair} by {}", count(&level.simulated_fingers, fingers)) }
+    };
+    let surely = if fingers == 1 { "not surely " } else { "" };
+    let pairs: Vec<String> = levels.iter().map(pair).collect();
+    (!pairs.is_empty()).then(|| format!("{surely}told apart: {}", named(&pairs)))
 }
 
 #[cfg(test)]
@@ -203,7 +181,7 @@ mod tests {
         );
         assert_eq!(
             score(8, bars(7, [3, 0]), Vec::new()).sentence(),
-            "0 of 2 layers are noticed by 8 of 8 simulated fingers; noticed by fewer: layer 1 \"bar 1\" by 3 of 7 and \
+            "0 of 2 layers are noticed by 8 of 8 simulated fingers; noticed by fewer: layer 1 \"bar 1\" by 3 of 7, \
              layer 2 \"bar 2\" by 0 of 7"
         );
     }
@@ -217,7 +195,7 @@ mod tests {
         let seldom = score(8, bars(7, [7, 7]), Vec::new()).sentence();
         assert_eq!(seldom, "2 of 2 layers are noticed by those of 8 simulated fingers that touched them");
         let none = format!("0 of 2 layers are {by}; not felt: ");
-        assert_eq!(sentence([0, 0]), format!("{none}layer 1 \"bar 1\" and layer 2 \"bar 2\""));
+        assert_eq!(sentence([0, 0]), format!("{none}layer 1 \"bar 1\", layer 2 \"bar 2\""));
     }
 
     #[test]
@@ -275,6 +253,6 @@ mod tests {
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();
-        assert!(sentence.ends_with("layer 2 \"bar\" by 1 and 35 more"), "{sentence}");
+        assert!(sentence.ends_with("layer 3 \"bar\" by 1 and 34 more"), "{sentence}");
     }
 }
