@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use filters::Filter;
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{Data, MeanRow, Settings, fit, fit_data};
+use frixel_play::TO_THE_END;
 use person::{Law, Protocol, Random};
 use rayon::prelude::*;
 use tally::Tally;
@@ -149,7 +150,7 @@ fn means(count: Option<u64>) -> bool {
         };
         let rows = [0.0, 75.0, 106.0, 150.0].into_iter().enumerate().map(row).collect();
         let mut tally = Tally::default();
-        tally.add(fit_data(Data::Means(rows), &settings()), |_| (0.5, truth_n));
+        tally.add(fit_data(Data::Means(rows), &settings(), TO_THE_END), |_| (0.5, truth_n));
         tally
     };
     let tally = (0..count.unwrap_or(600)).into_par_iter().map(table).reduce(Tally::default, Tally::and);

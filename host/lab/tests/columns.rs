@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use frixel_lab::fit::{self, Data, Fit, FitError, Row, words};
+use frixel_play::TO_THE_END;
 use proptest::prelude::*;
 
 use super::person::Random;
@@ -157,7 +158,7 @@ fn rows_that_were_copied_are_refused() {
 fn fit_of_text(text: &str) -> (Result<Fit, FitError>, String) {
     let reading = fit::data(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
     assert!(matches!(reading.value, Data::Recording(_)));
-    (fit::fit_data(reading.value, &settings()), reading.understood.unwrap_or_default())
+    (fit::fit_data(reading.value, &settings(), TO_THE_END), reading.understood.unwrap_or_default())
 }
 
 #[test]

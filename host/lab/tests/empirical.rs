@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, Summary, VoltageLaw, data, fit, fit_empirical};
+use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile, Profile};
 
 use super::person::{Law, Person, Protocol};
@@ -31,7 +32,7 @@ fn exponent_of(fit: &EmpiricalFit) -> Estimate {
 }
 
 fn empirical(rows: Vec<Row>) -> Result<EmpiricalFit, FitError> {
-    fit_empirical(Data::Recording(rows), &settings())
+    fit_empirical(Data::Recording(rows), &settings(), TO_THE_END)
 }
 
 /// Of 18 intervals of 95 %, four or more miss the truth in one set of seeds in 90.
@@ -105,7 +106,7 @@ fn means_have_a_power_law_too() {
         let friction_n = 0.25 + 0.1 * (volts / 150.0).powi(4);
         writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
     }
-    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings()).unwrap();
+    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
     assert!(contains(&exponent_of(&fit), 4.0) && contains(&fit.highest.electric_friction_n, 0.1), "{fit:?}");
     assert_eq!((fit.strokes, fit.held_out_n), (5, None));
 }
@@ -118,7 +119,7 @@ fn means_of_a_steep_law_have_the_friction_coefficient_of_that_law() {
         let friction_n = 0.25 + 0.1 * (volts / 150.0).powi(6);
         writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
     }
-    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings()).unwrap();
+    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
     assert!((fit.friction_coefficient.value - 0.5).abs() < 1e-3, "{:?}", fit.friction_coefficient);
 }
 

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use super::error::raised;
 use super::profile::ProfileText;
+use super::signals::interruptible;
 
 /// What to fit for, an object of `python/frixel/fitting.py`.
 #[derive(FromPyObject)]
@@ -31,19 +32,19 @@ pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> 
     let settings = Settings { voltage_v_rms, normal_load_n, coating_gap_m, without, seed };
     let screen = screen.name.unwrap_or_else(|| named.name().to_owned());
     let experiment = Experiment { date, method, screen: screen.clone() };
-    let fitted = py.detach(|| {
+    let fitted = interruptible(py, |goes_on| {
         let Reading { value: data, understood } = fit::data(csv.as_bytes())?;
         let with_note = |words: String| match &understood {
             Some(understood) => format!("{words}  note: {understood}\n"),
             None => words,
         };
         if empirical {
-            let fit = fit::fit_empirical(data, &settings)?;
+            let fit = fit::fit_empirical(data, &settings, goes_on)?;
             return Ok((fit.json().to_string(), with_note(fit.words()), fit.profile(experiment).to_toml()));
         }
-        let fit = fit::fit_data(data, &settings)?;
+        let fit = fit::fit_data(data, &settings, goes_on)?;
         let summary = serde_json::to_string(&Summary::from(&fit)).unwrap_or_default();
         Ok((summary, with_note(fit::words(&fit, &screen)), fit::profile(&fit, experiment).to_toml()))
-    });
+    })?;
     fitted.map_err(|error: FitError| raised(py, "FitError", (error.to_string(),)))
 }

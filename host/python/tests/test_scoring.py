@@ -104,6 +104,8 @@ def test_a_scene_that_is_none_or_refused_is_said() -> None:
         "frixel.sweep.play(cells[0])",
         # 250,000 combinations are compiled.
         "frixel.sweep.cells({**plan, 'parameters': values})",
+        # 499 tables of 40,000 means are drawn and fitted.
+        "frixel.fit(means)",
     ],
 )
 def test_an_interrupt_ends_long_work(work: str) -> None:
@@ -113,6 +115,9 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
         "values = {'layer.1.friction_fraction': {'from': 0.2, 'to': 0.3, 'count': 1000}}\n"
         "values['drive.voltage_max_v_rms'] = {'from': 40, 'to': 50, 'count': 250}\n"
         "cells = frixel.sweep.cells(plan)\n"
+        "volts = [0.0, 75.0, 106.0, 150.0] * 10000\n"
+        "means = {'voltage_v_rms': volts, 'normal_force_n': [0.5] * 40000, 'friction_se_n': [0.01] * 40000}\n"
+        "means['friction_n'] = [0.25 + 5e-6 * v**2 for v in volts]\n"
         f"print('begun', flush=True)\ntry:\n    {work}\nexcept KeyboardInterrupt:\n    print('interrupted')\n"
     )
     child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)

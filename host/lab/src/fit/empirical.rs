@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use frixel_play::GoesOn;
 use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw};
 
 use super::error::FitError;
@@ -69,9 +70,9 @@ pub enum VoltageLaw {
 
 /// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them; where the
 /// strokes of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does
-/// not rise with the voltage as a profile can have it.
-pub fn fit_empirical(data: Data, settings: &Settings) -> Result<EmpiricalFit, FitError> {
-    let data = FittedData::of(data, settings)?;
+/// not rise with the voltage as a profile can have it, and with [`FitError::Interrupted`] when `goes_on` breaks.
+pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Result<EmpiricalFit, FitError> {
+    let data = FittedData::of(data, settings, goes_on)?;
     let friction_coefficient = data.friction_coefficient(|replicate| &replicate.power)?;
     let strokes = results(&data.strokes, &data.fitted.best.power).ok_or(FitError::NotConverged)?;
     let (law, highest, held_out_n) = match power_law(&data, &strokes) {

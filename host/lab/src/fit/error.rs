@@ -30,6 +30,9 @@ pub enum FitError {
          rows"
     )]
     NotConverged,
+    /// The caller ended the fit.
+    #[error("the fit was interrupted")]
+    Interrupted,
     /// The data break another rule.
     #[error("{0}")]
     Refused(String),

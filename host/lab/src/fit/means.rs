@@ -13,6 +13,7 @@ use std::io::Read;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
+use frixel_play::GoesOn;
 use frixel_scene::brief;
 
 use super::contrast::StrokeMeans;
@@ -126,7 +127,7 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
 }
 
 /// Fits laws to means. Fails if they scatter more than their errors explain.
-pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, FitError> {
+pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) -> Result<FittedData, FitError> {
     if let Some(stroke) = settings.without.first() {
         return Err(FitError::Refused(format!(
             "--without {}: a table of means has no strokes: delete the row of the mean that is to be left out",
@@ -145,7 +146,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings) -> Result<FittedData, F
     rules::check_natural(&mut strokes, &mut faults)?;
     faults.check()?;
     let begin = start(&strokes, &observations)?;
-    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &begin };
+    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &begin, goes_on };
     let best = search.run(&observations, &begin).ok_or(FitError::NotConverged)?;
     let mut random = RandomErrors(Pcg64::seed_from_u64(settings.seed));
     let freedoms: Vec<Option<f64>> = rows.iter().map(|row| row.count.map(|count| count - 1.0)).collect();
@@ -279,7 +280,10 @@ impl RandomErrors {
 #[cfg(test)]
 mod tests {
     use std::fmt::Write as _;
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
+    use frixel_play::TO_THE_END;
     use rand_pcg::Pcg64;
     use rand_pcg::rand_core::SeedableRng;
 
@@ -326,7 +330,7 @@ mod tests {
     }
 
     fn fitted(text: &str) -> Result<Fit, FitError> {
-        fit_data(data(text.as_bytes())?.value, &settings())
+        fit_data(data(text.as_bytes())?.value, &settings(), TO_THE_END)
     }
 
     #[test]
@@ -447,10 +451,21 @@ mod tests {
     }
 
     #[test]
+    fn a_fit_ends_when_its_caller_says_so() {
+        let data = data(table(None, 1.0, 16, &[0.5]).as_bytes()).unwrap().value;
+        let asked = AtomicU32::new(0);
+        let goes_on = || match asked.fetch_add(1, Ordering::Relaxed) {
+            ..10 => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        };
+        assert!(matches!(fit_data(data, &settings(), &goes_on), Err(FitError::Interrupted)));
+    }
+
+    #[test]
     fn a_mean_is_not_left_out_as_a_stroke() {
         let settings = Settings { without: vec!["3".to_owned()], ..settings() };
         let data = data(table(None, 1.0, 16, &[0.5]).as_bytes()).unwrap().value;
-        let said = fit_data(data, &settings).unwrap_err().to_string();
+        let said = fit_data(data, &settings, TO_THE_END).unwrap_err().to_string();
         assert!(said.contains("--without 3") && said.contains("delete the row"), "{said}");
     }
 

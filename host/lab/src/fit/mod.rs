@@ -44,6 +44,8 @@ mod turns;
 mod verdict;
 mod zero;
 
+use frixel_play::{GoesOn, TO_THE_END};
+
 pub use crate::bootstrap::Estimate;
 use contrast::{Edges, Levels, Phases, StrokeMeans};
 pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
@@ -182,19 +184,20 @@ struct FittedData {
 }
 
 impl FittedData {
-    fn of(data: Data, settings: &Settings) -> Result<Self, FitError> {
-        match data {
-            Data::Recording(rows) => Self::of_recording(rows, settings),
-            Data::Means(rows) => means::fit(&rows, settings),
-        }
+    fn of(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Self, FitError> {
+        let fitted = match data {
+            Data::Recording(rows) => Self::of_recording(rows, settings, goes_on),
+            Data::Means(rows) => means::fit(&rows, settings, goes_on),
+        };
+        if goes_on().is_break() { Err(FitError::Interrupted) } else { fitted }
     }
 
-    fn of_recording(rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
+    fn of_recording(rows: Vec<Row>, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Self, FitError> {
         table::check_numbers(&rows)?;
         let (rows, rows_without_time) = recording::with_times(rows)?;
         let (rows, sensor_zero) = zero::taken_from(rows);
         let mut faults = Faults::default();
-        let fitted = Self::of_strokes_without(&mut faults, rows, settings);
+        let fitted = Self::of_strokes_without(&mut faults, rows, settings, goes_on);
         // A faulty stroke may be the cause of what else is wrong.
         faults.check()?;
         if matches!(fitted, Err(FitError::TooFew(_))) {
@@ -206,7 +209,12 @@ impl FittedData {
     }
 
     /// Fits the laws to the strokes without faults; the others are added to `faults`.
-    fn of_strokes_without(faults: &mut Faults, rows: Vec<Row>, settings: &Settings) -> Result<Self, FitError> {
+    fn of_strokes_without(
+        faults: &mut Faults,
+        rows: Vec<Row>,
+        settings: &Settings,
+        goes_on: GoesOn<'_>,
+    ) -> Result<Self, FitError> {
         rules::check_units(&rows)?;
         let mut recording = Recording::new(rows, &settings.without, faults)?;
         let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
@@ -227,7 +235,7 @@ impl FittedData {
 
         let observations: Vec<Observation> = strokes.iter().flat_map(|stroke| &stroke.observations).copied().collect();
         let start = start(&strokes, &observations)?;
-        let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start };
+        let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start, goes_on };
         let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
         rules::check_slip(&strokes, &best.power, faults);
         rules::check_top(&strokes, voltage_range_v_rms.1)?;
@@ -260,14 +268,15 @@ impl FittedData {
     }
 }
 
-/// Fits the contact model to a recording or to means.
-pub fn fit_data(data: Data, settings: &Settings) -> Result<Fit, FitError> {
-    judged(&FittedData::of(data, settings)?, settings)
+/// Fits the contact model to a recording or to means. When `goes_on` breaks, the fit fails with
+/// [`FitError::Interrupted`].
+pub fn fit_data(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Fit, FitError> {
+    judged(&FittedData::of(data, settings, goes_on)?, settings)
 }
 
 /// Fits the contact model to the rows of a recording.
 pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
-    fit_data(Data::Recording(rows), settings)
+    fit_data(Data::Recording(rows), settings, TO_THE_END)
 }
 
 /// The fit of the contact model. Fails if the data contradict it.

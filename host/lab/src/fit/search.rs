@@ -1,5 +1,7 @@
 //! Searches the laws that fit observations best.
 
+use frixel_play::GoesOn;
+
 use super::contrast::StrokeMeans;
 use super::error::FitError;
 use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
@@ -20,11 +22,16 @@ pub(super) struct Search<'s> {
     pub(super) voltage_v_rms: f64,
     pub(super) normal_load_n: f64,
     pub(super) start: &'s Solution,
+    pub(super) goes_on: GoesOn<'s>,
 }
 
 impl Search<'_> {
-    /// Fits the contact model and the power laws to observations.
+    /// Fits the contact model and the power laws to observations; `None` if they do not converge, or if `goes_on`
+    /// breaks.
     pub(super) fn run(&self, observations: &[Observation], near: &Solution) -> Option<Replicate> {
+        if (self.goes_on)().is_break() {
+            return None;
+        }
         let weighted: Vec<_> = observations.iter().map(|observation| self.weighted(observation)).collect();
         let contact = solve(Form::Contact, &weighted, near).or_else(|| solve(Form::Contact, &weighted, self.start))?;
         let reference_load_n = self.normal_load_n;

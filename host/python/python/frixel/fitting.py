@@ -102,6 +102,8 @@ def fit(
         A column has another length.
     FitError
         A column is missing or has a wrong number, or the data do not give a finger.
+    KeyboardInterrupt
+        Ctrl-C, at once.
     """
     if law not in ("contact", "empirical"):
         raise refusal("the law", "'contact' or 'empirical'", law)

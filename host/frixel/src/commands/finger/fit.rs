@@ -12,6 +12,7 @@ use clap::{Args, ValueEnum};
 use frixel_files::{Inputs, OutputFile, commit_all};
 use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
 use frixel_lab::table::Reading;
+use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile};
 
 use crate::commands::argument::positive;
@@ -131,8 +132,8 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
     let Reading { value: data, understood } = fit::data(open(path)?).map_err(refused)?;
     note_understood(path, understood.as_deref());
     let fit = match args.law {
-        Law::Contact => fit::fit_data(data, &settings).map(|fit| Fitted::Contact(Box::new(fit))),
-        Law::Empirical => fit::fit_empirical(data, &settings).map(|fit| Fitted::Empirical(Box::new(fit))),
+        Law::Contact => fit::fit_data(data, &settings, TO_THE_END).map(|fit| Fitted::Contact(Box::new(fit))),
+        Law::Empirical => fit::fit_empirical(data, &settings, TO_THE_END).map(|fit| Fitted::Empirical(Box::new(fit))),
     };
     let fit = fit.map_err(refused)?;
     if let Some(outputs) = &outputs {
