@@ -16,7 +16,7 @@ pub struct BoardImage {
 
 impl BoardImage {
     /// The image for a kind of board; for the NUCLEO-G474RE if that kind is simulated.
-    pub(super) fn of(program: &Program, kind: BoardKind) -> Self {
+    pub fn of(program: &Program, kind: BoardKind) -> Self {
         let (folder, target, processor) = match kind {
             BoardKind::Pico => ("firmware/board-pico", " --target thumbv6m-none-eabi", Some("rp2040")),
             BoardKind::Pico2 => ("firmware/board-pico", "", Some("rp2350")),

@@ -1,13 +1,13 @@
 //! Resources of the board that a scene uses, and those that it leaves out.
 
 use frixel_chart::{Axis, Line, Look, Mark, PALETTE, Panel};
-use frixel_felt::check::BoardCosts;
+use frixel_felt::check::{BoardCosts, BoardImage, SceneCheck};
+use frixel_felt::judge::Judgement;
 use frixel_hil_sim::RigConfig;
 use frixel_layers::cost::{LayerCosts, cycles};
-use frixel_layers::{feature_names, layer_set};
-use frixel_model::InverseTable;
-use frixel_scene::{Program, TargetRange};
-use frixel_wire::hello::feature;
+use frixel_layers::layer_set;
+use frixel_scene::Program;
+use frixel_wire::hello::BoardKind;
 
 use super::Subject;
 use super::counts::Counts;
@@ -19,7 +19,11 @@ type Part = (&'static str, &'static str, f64, f64);
 pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
     let Subject { name, program, .. } = subject;
     let (parts, notes) = match program {
-        Ok(program) => (parts(program, counts), notes(name, program, counts)),
+        Ok(program) => {
+            let (check, image) = (check(program), BoardImage::of(program, BoardKind::NucleoG474re));
+            let image_bytes = image_bytes(&image, counts);
+            (parts(program, &check, image_bytes, counts), notes(name, program, &check, (&image, image_bytes), counts))
+        }
         Err(error) => (Vec::new(), vec![format!("{name} cannot be compiled: {error}")]),
     };
     let mut table = vec![row("of the board|this scene|left out|of")];
@@ -43,22 +47,23 @@ pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
     Section { name: "scene", question: "What the scene leaves out", panel, table, notes, rows }
 }
 
-fn parts(program: &Program, counts: &Counts) -> Vec<Part> {
+/// What `frixel check` says of the program, but for what is felt of it.
+fn check(program: &Program) -> SceneCheck {
     let rig = RigConfig::default();
-    let (limits, costs) = (&rig.board.limits, BoardCosts::of(program, &rig, 0));
-    let worst = program.worst_tick(limits.core).cycles(limits.core);
-    let (reach, targets) = (&program.reach, TargetRange::of(program));
-    let pictures: usize = program.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
-    let electric_n = (targets.most_n.min(reach.friction_max_n()) - reach.natural_friction_n).max(0.0);
-    let table = [costs.table_rows, costs.table_rows_whole].map(|rows| (InverseTable::ROW_BYTES * rows) as f64);
+    SceneCheck::of(program, &rig.board.limits, &BoardCosts::of(program, &rig, 0), Judgement::default())
+}
+
+fn parts(program: &Program, check: &SceneCheck, image_bytes: Option<f64>, counts: &Counts) -> Vec<Part> {
+    let SceneCheck { tick, ram, reach, targets, .. } = check;
+    let electric_n = (targets.most_n.min(reach.total_max_n) - reach.natural_n).max(0.0);
     let mut parts: Vec<Part> = vec![
-        ("tick, if all layers were under the finger", "cycles", worst.into(), every_layer(program).into()),
-        ("tick, of what a board accepts", "cycles", worst.into(), limits.tick_cycles_max.into()),
-        ("inverse table", "bytes", table[0], table[1]),
-        ("pictures", "bytes", pictures as f64, limits.bitmap_pool_bytes.into()),
-        ("electric friction", "mN", 1e3 * electric_n, 1e3 * reach.electric_friction_max_n),
+        ("tick, if all layers were under the finger", "cycles", tick.cycles.into(), every_layer(program).into()),
+        ("tick, of what a board accepts", "cycles", tick.cycles.into(), tick.cycles_limit.into()),
+        ("inverse table", "bytes", ram.table_bytes as f64, ram.table_whole_bytes as f64),
+        ("pictures", "bytes", ram.bitmap_pool_bytes as f64, ram.bitmap_pool_limit_bytes.into()),
+        ("electric friction", "mN", 1e3 * electric_n, 1e3 * reach.electric_max_n),
     ];
-    let image = image_bytes(program, counts).zip(counts.get("g474.flash_full"));
+    let image = image_bytes.zip(counts.get("g474.flash_full"));
     parts.extend(image.map(|(needed, whole)| ("image, flash", "bytes", needed, whole)));
     parts
 }
@@ -73,26 +78,23 @@ fn every_layer(program: &Program) -> u32 {
     cycles(core, costs.of_tick(layer_set(0..program.records.len())))
 }
 
-/// The Cargo features of an image that plays the program.
-fn features(program: &Program) -> Vec<&'static str> {
-    // `frixel play` subscribes to telemetry.
-    let needed = program.features() | feature::TELEMETRY;
-    feature_names().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| name).collect()
-}
-
-/// Bytes of flash of the NUCLEO's image with these features: the image without any, and what each adds to it alone.
-fn image_bytes(program: &Program, counts: &Counts) -> Option<f64> {
+/// Bytes of flash of a NUCLEO's image: the image without any feature, and what each adds to it alone.
+fn image_bytes(image: &BoardImage, counts: &Counts) -> Option<f64> {
     let bytes = |build: &str| counts.get(&format!("g474.flash_{build}"));
     let none = bytes("none")?;
-    let added =
-        features(program).into_iter().map(|name| Some(bytes(&format!("{}_only", name.replace('-', "_")))? - none));
+    let names = image.features.iter();
+    let added = names.map(|name| Some(bytes(&format!("{}_only", name.replace('-', "_")))? - none));
     Some(none + added.sum::<Option<f64>>()?)
 }
 
-fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
-    let omitted: Vec<String> = program.optimisations().map(ToString::to_string).collect();
-    let omitted = if omitted.is_empty() { "nothing of its file is left out".to_owned() } else { omitted.join("; ") };
-    let (reach, targets) = (&program.reach, TargetRange::of(program));
+fn notes(
+    name: &str,
+    program: &Program,
+    SceneCheck { left_out, finger, reach, targets, .. }: &SceneCheck,
+    (image, image_bytes): (&BoardImage, Option<f64>),
+    counts: &Counts,
+) -> Vec<String> {
+    let omitted = if left_out.is_empty() { "nothing of its file is left out".to_owned() } else { left_out.join("; ") };
     let mut notes = vec![format!("Layers of {name} that are played: {}; {omitted}.", program.records.len())];
     let refused: Vec<String> = program.refusals().map(ToString::to_string).collect();
     if !refused.is_empty() {
@@ -100,10 +102,10 @@ fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
     }
     notes.push(format!(
         "Reach of {}, {}: {:.4} to {:.4} mN at {:.0} V rms; the scene asks for {:.1} to {:.1} mN.",
-        program.finger.title,
-        program.finger.origin.word(),
-        1e3 * reach.natural_friction_n,
-        1e3 * reach.friction_max_n(),
+        finger.title,
+        finger.origin,
+        1e3 * reach.natural_n,
+        1e3 * reach.total_max_n,
         reach.voltage_max_v_rms,
         1e3 * targets.least_n,
         1e3 * targets.most_n
@@ -113,13 +115,13 @@ fn notes(name: &str, program: &Program, counts: &Counts) -> Vec<String> {
          from instructions by class for a Cortex-M4F. Rows of the table that the scene cannot ask for are not computed."
             .to_owned(),
     );
-    let image = if let Some(bytes) = image_bytes(program, counts) {
+    let bytes = if let Some(bytes) = image_bytes {
         format!("about {bytes:.0} bytes, the sum of what each adds to an image without any")
     } else {
         let shown = |build| counts.get(build).map_or("unknown".to_owned(), |bytes| bytes.to_string());
         let [least, most] = ["g474.flash_grating_only", "g474.flash_full"].map(shown);
         format!("from {least} bytes with one kind of layer to {most} with everything")
     };
-    notes.push(format!("The smallest image that plays it has the features {}: {image}.", features(program).join(", ")));
+    notes.push(format!("The smallest image that plays it has the features {}: {bytes}.", image.features.join(", ")));
     notes
 }
