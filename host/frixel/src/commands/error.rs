@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use anyhow::anyhow;
+use frixel_files::OutputFile;
 pub(crate) use frixel_files::writing;
 use frixel_hil_sim::StrokeError;
 use frixel_lab::input::check_path;
@@ -45,6 +46,14 @@ pub(crate) fn of_finger(error: ParameterError) -> anyhow::Error {
 /// No stroke fits the screen.
 pub(crate) fn of_generated_stroke(error: StrokeError) -> anyhow::Error {
     at("no stroke can be generated for this scene's screen")(error)
+}
+
+/// Adds to an error that ended a recording where its rows are, if it has any, with advice on how to keep them.
+pub(crate) fn cut_off(recording: &OutputFile, advice: &str, error: anyhow::Error) -> anyhow::Error {
+    if recording.is_cut_off() {
+        return anyhow!("{error}; what was recorded until then is in {}: {advice}", recording.partial().display());
+    }
+    error
 }
 
 /// This operating system lacks what `what` needs.

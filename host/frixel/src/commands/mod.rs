@@ -6,7 +6,6 @@ mod check;
 mod completions;
 mod demo;
 mod error;
-mod experiment;
 mod finger;
 mod interrupt;
 mod jobs;

@@ -1,8 +1,11 @@
 //! How every command opens the serial port that its `--port` names.
 
-use anyhow::{Result, anyhow};
-use frixel_driver::{DEFAULT_BAUD, PortError, SerialLink};
+use anyhow::{Result, anyhow, bail};
+use frixel_driver::{DEFAULT_BAUD, Device, PortError, SerialLink};
 use frixel_scene::Nearest;
+
+use super::terminal::note;
+use crate::rigs::PortLink;
 
 /// The boards that `--port` of `frixel play` names in place of a path.
 pub(super) const BOARDS: [&str; 3] = ["sim", "qemu", "pico"];
@@ -15,6 +18,22 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
         }
         source => source.into(),
     })
+}
+
+/// Connects to the board at a serial port, to play on it: says what a person should know of it, and rejects one whose
+/// electrode may not be driven. The command takes these boards in place of a port.
+pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
+    let device = Device::connect(PortLink::new(open(port, boards)?))?;
+    for sentence in device.hello().notice_sentences() {
+        note(format_args!("note: {sentence}"));
+    }
+    if arm || device.hello().board.is_simulated() {
+        return Ok(device);
+    }
+    bail!(
+        "{port} is a board with an electrode: add --arm, and hold the board's arm switch, to let it drive hundreds of \
+         volts"
+    )
 }
 
 /// Names what `--port` of a command takes, and guesses which of it was meant.

@@ -1,6 +1,5 @@
 //! `frixel sim`.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{of_finger, of_generated_stroke};
@@ -10,7 +9,6 @@ use anyhow::Result;
 use frixel_files::Inputs;
 use frixel_hil_sim::{Board, BoardMemory, FingertipConfig, OwnFinger, Person, Rig, RigConfig, WorldOptions};
 use frixel_lab::simulate::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, endless_sweep};
-use frixel_scene::{Scene, compile};
 
 use super::SimArgs;
 use super::interrupt::Interrupt;
@@ -19,8 +17,6 @@ use super::terminal::{note, print_line};
 
 /// Rows per second in felt.csv.
 const ROWS_HZ: u32 = 1000;
-/// A scene without friction of its own, from which the contact of a profile is computed.
-const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
 
 pub(super) fn run(args: &SimArgs) -> Result<()> {
     let interrupt = Interrupt::watch()?;
@@ -60,8 +56,7 @@ fn own_finger(args: &SimArgs) -> Result<Option<OwnFinger>> {
     }
     let Some(finger) = &args.finger else { return Ok(None) };
     let names = ProfileNames { finger: Some(finger.clone()), screen: args.screen.clone() };
-    let scene = names.applied_to(Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?)?;
-    let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz)?;
+    let program = names.without_scene(&Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz)?;
     let law = program.header.friction_law().map_err(of_finger)?;
     Ok(Some(OwnFinger { law, fingertip: FingertipConfig::REALISTIC }))
 }

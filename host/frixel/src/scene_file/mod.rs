@@ -13,8 +13,10 @@ use std::path::{Path, PathBuf};
 use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Scene, Screen, TILDE_ADVICE, is_picture,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE, compile,
+    is_picture,
 };
+use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
 use crate::input;
@@ -23,6 +25,9 @@ pub(crate) use files::SceneFiles;
 
 /// First bytes of a file, by which a picture is known.
 const SIGNATURE_BYTES: u64 = 8;
+
+/// A scene without friction of its own.
+const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
 
 /// Why a scene file could not be loaded.
 #[derive(Debug, Error)]
@@ -196,6 +201,13 @@ impl ProfileNames {
             scene = scene.with_finger(profile(name)?, name);
         }
         Ok(scene)
+    }
+
+    /// This finger and screen on a board, with all voltage that a scene drives by default and no friction: what board
+    /// and finger give is there, without any scene.
+    pub(crate) fn without_scene(&self, limits: &BoardLimits, tick_hz: u32) -> Result<Program, SceneFileError> {
+        let scene = Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?;
+        Ok(compile(&self.applied_to(scene)?, limits, tick_hz)?)
     }
 }
 

@@ -14,7 +14,7 @@ use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
 
-use crate::commands::experiment::cut_off;
+use crate::commands::error::cut_off;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::parquet;
 use crate::commands::port;

@@ -14,7 +14,7 @@ use frixel_lab::calibration::{align, read_board, write_csv};
 use frixel_lab::recording::{Metadata, calibration_fields};
 use frixel_wire::hello::Hello;
 
-use crate::commands::experiment;
+use crate::commands::error::cut_off;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::parquet;
 use crate::commands::terminal::say;
@@ -48,7 +48,7 @@ pub(in crate::commands) struct CalibrateArgs {
     #[arg(long, value_name = "FILE.csv")]
     forces: Option<PathBuf>,
     /// Highest voltage, in volts rms, at most 150. Without it, 150 or what the board allows.
-    #[arg(long, value_name = "V_RMS", value_parser = experiment::voltage)]
+    #[arg(long, value_name = "V_RMS", value_parser = plan::voltage)]
     voltage: Option<f64>,
     /// Number of strokes, 9 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
     #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(9..=360))]
@@ -69,7 +69,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
     let inputs = Inputs::new(&args.forces);
     let recording = OutputFile::recording(&args.output, "-o", &inputs, args.overwrite)?;
     if args.finish {
-        return finish(args, &recording).map_err(|error| experiment::cut_off(&recording, CUT_OFF, error));
+        return finish(args, &recording).map_err(|error| cut_off(&recording, CUT_OFF, error));
     }
     let interrupt = Interrupt::watch()?;
     // A pipe is opened once.
@@ -84,7 +84,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
         recorded::on_port(args, &recording, &interrupt, partial).map(|(recorded, hello)| (recorded, Some(hello)))
     };
     let written = recorded.and_then(|(recorded, hello)| write(args, &recording, &recorded, hello.as_ref()));
-    written.map_err(|error| experiment::cut_off(&recording, CUT_OFF, error))
+    written.map_err(|error| cut_off(&recording, CUT_OFF, error))
 }
 
 /// Makes the recording of what one that was cut off has left.

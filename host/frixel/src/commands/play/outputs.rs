@@ -10,7 +10,7 @@ use frixel_files::{FileWriter, Inputs, OutputFile, OutputFolder, commit_all, is_
 use frixel_lab::recording::Metadata;
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
-use super::super::experiment::cut_off;
+use super::super::error::cut_off;
 use super::PlayArgs;
 use super::record_file::{self, RecordFile};
 use super::recorded::Sources;

@@ -6,8 +6,7 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_play::RigStream;
 use frixel_scene::Scene;
 
-use super::super::experiment;
-use super::super::port::BOARDS;
+use super::super::port::{self, BOARDS};
 #[cfg(unix)]
 pub(super) use super::emulator::{play_on_emulator, play_on_pico};
 use super::follow::follow;
@@ -75,7 +74,7 @@ pub(super) fn play_on_port(
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played> {
-    let device = experiment::connect(&args.port, &BOARDS, args.arm)?;
+    let device = port::connect_to_play(&args.port, &BOARDS, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;

@@ -13,15 +13,18 @@ use frixel_wire::hello::BoardLimits;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::CalibrateArgs;
+use crate::commands::argument::{above_zero_to, number};
 use crate::commands::error::of_finger;
-use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::terminal::{note, say};
 use crate::rigs::RecordedLink;
+use crate::scene_file::ProfileNames;
 use frixel_files::OutputFile;
 
 /// Rows a second of the recording.
 pub(super) const ROW_HZ: u32 = 1_000;
+/// Highest voltage of a calibration, in volts rms.
+const VOLTAGE_MAX_V_RMS: f64 = 150.0;
 
 /// A protocol that is ready to play on a board.
 pub(super) struct Plan {
@@ -33,7 +36,7 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(args: &CalibrateArgs, limits: &BoardLimits, tick_hz: u32) -> Result<Self> {
-        let voltage_max_v_rms = experiment::highest_voltage(args.voltage, limits, tick_hz)?;
+        let voltage_max_v_rms = highest_voltage(args.voltage, limits, tick_hz)?;
         let protocol = Protocol { strokes: args.strokes.into(), ..Protocol::new(voltage_max_v_rms, args.seed) };
         let scene = protocol.scene().map_err(of_finger)?;
         let scene = Scene::parse(&scene, "calibration", &std::collections::BTreeMap::new())?;
@@ -99,6 +102,25 @@ impl Plan {
     }
 }
 
+/// Parses the highest voltage of a calibration.
+pub(super) fn voltage(text: &str) -> Result<f64, String> {
+    number(text, above_zero_to(VOLTAGE_MAX_V_RMS), "a voltage above 0, at most 150 V rms")
+}
+
+/// The highest voltage of a calibration, in volts rms: the given one, which must be within the board's limit, or else
+/// what the board allows, up to 150.
+fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits, tick_hz: u32) -> Result<f64> {
+    let limit_v_rms = ProfileNames::default().without_scene(limits, tick_hz)?.reach.voltage_max_v_rms;
+    match given_v_rms {
+        None => Ok(limit_v_rms.min(VOLTAGE_MAX_V_RMS)),
+        Some(volts) if volts <= limit_v_rms => Ok(volts),
+        Some(found) => bail!(
+            "--voltage {found} is above what this board drives, {limit_v_rms:.0} V rms: give at most that, or leave \
+             --voltage out"
+        ),
+    }
+}
+
 /// What the board has reported since the last call.
 fn board_rows<L: RecordedLink>(player: &mut Player<L>) -> impl Iterator<Item = BoardRow> {
     let row = |row: FeltRow| {
@@ -106,4 +128,25 @@ fn board_rows<L: RecordedLink>(player: &mut Player<L>) -> impl Iterator<Item = B
         Some(BoardRow { time_s, voltage_v_rms: row.voltage_v_rms?, speed_mm_s })
     };
     player.recorder_mut().take_rows().into_iter().filter_map(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use frixel_hil_sim::Board;
+    use frixel_lab::calibration::Protocol;
+    use frixel_scene::{Scene, compile};
+
+    use super::highest_voltage;
+
+    #[test]
+    fn a_board_plays_a_calibration_at_its_highest_voltage() {
+        for board in [Board::SIMULATOR, Board::NUCLEO_G474RE, Board::PICO_2] {
+            let highest_v_rms = highest_voltage(None, &board.limits, board.tick_hz).unwrap();
+            let scene = Protocol::new(highest_v_rms, 1).scene().unwrap();
+            let scene = Scene::parse(&scene, "calibration", &BTreeMap::new()).unwrap();
+            compile(&scene, &board.limits, board.tick_hz).unwrap();
+        }
+    }
 }

@@ -13,8 +13,8 @@ use frixel_wire::hello::Hello;
 use super::plan::{Plan, ROW_HZ};
 use super::{CUT_OFF, CalibrateArgs, forces};
 use crate::commands::error::{of_finger, of_generated_stroke, reading};
-use crate::commands::experiment;
 use crate::commands::interrupt::Interrupt;
+use crate::commands::port;
 use crate::commands::profiles::screen;
 use crate::commands::waiting;
 use frixel_files::{FileWriter, OutputFile};
@@ -82,7 +82,7 @@ pub(super) fn on_port(
              out"
         );
     }
-    let device = experiment::connect(&args.port, &["sim"], args.arm)?;
+    let device = port::connect_to_play(&args.port, &["sim"], args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
     plan.say(recording)?;
