@@ -23,6 +23,12 @@ pub enum PlayError {
     /// The layer cannot be changed.
     #[error(transparent)]
     Live(#[from] LiveError),
+    /// A board with an electrode plays no program that extrapolates from what was measured on its finger.
+    #[error("a real board plays only what was measured on this finger: {warning}")]
+    Unmeasured {
+        /// The compiler's warning, with what to do.
+        warning: String,
+    },
     /// No scene plays whose layers could be changed.
     #[error("no scene plays: play one, then change its layers")]
     NothingPlays,
@@ -44,7 +50,7 @@ impl PlayError {
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Device(error) => is_refusal(error),
-            Self::Live(_) | Self::NothingPlays => true,
+            Self::Live(_) | Self::Unmeasured { .. } | Self::NothingPlays => true,
             _ => false,
         }
     }

@@ -72,6 +72,7 @@ impl<L: Link + Recorded> Player<L> {
         telemetry_period_ticks: u32,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), PlayError> {
+        self.check_measured(&program)?;
         upload::start(&mut self.device, &program, progress)?;
         self.playing = Some(LiveLayers::new(program));
         self.begin()?;
@@ -94,6 +95,14 @@ impl<L: Link + Recorded> Player<L> {
             self.begin()?;
         }
         Ok(())
+    }
+
+    /// Refuses a program whose finger was not measured at the voltage or load that it needs, unless the board is
+    /// simulated.
+    fn check_measured(&self, program: &Program) -> Result<(), PlayError> {
+        let is_real = !self.device.hello().board.is_simulated();
+        let warning = program.warnings().find(|warning| is_real && warning.is_refused_by_boards());
+        warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning: warning.to_string() }))
     }
 
     /// The board has begun to play.
@@ -124,6 +133,7 @@ impl<L: Link + Recorded> Player<L> {
     }
 
     fn replace_layers(&mut self, layers: LiveLayers) -> Result<Replaced, PlayError> {
+        self.check_measured(layers.program())?;
         let faded_out = match self.upload(&layers) {
             Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => {
                 self.replace_alone(&layers)?;

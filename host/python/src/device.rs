@@ -112,16 +112,7 @@ impl Device {
             return Ok(scene.program().clone().into());
         }
         let compiled = py.detach(|| compile(scene.parsed(), &self.hello.limits, self.hello.tick_hz));
-        let program = compiled.map_err(|error| scene_error(py, &error))?;
-        let is_real = !self.hello.board.is_simulated();
-        if let Some(warning) = program.warnings().find(|warning| is_real && warning.is_refused_by_boards()) {
-            let message = format!(
-                "a real board plays only what was measured on this finger: {warning}; fit the finger again up to this \
-                 voltage and load, or lower the scene's"
-            );
-            return Err(raised(py, "PlayError", (message,)));
-        }
-        Ok(program.into())
+        Ok(compiled.map_err(|error| scene_error(py, &error))?.into())
     }
 }
 

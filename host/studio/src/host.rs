@@ -27,14 +27,8 @@ pub(crate) fn stream_mut<S: ByteStream + Recorded>(host: &mut Host<S>) -> &mut S
 /// Compiles a scene for the board and puts it there. A scene that plays is replaced between two ticks. If the scene has
 /// mistakes or the board refuses it, the one before plays on.
 pub(crate) fn load<S: ByteStream + Recorded>(host: &mut Host<S>, request: &Request) -> Result<(), HostError> {
-    let Hello { limits, tick_hz, board, .. } = *host.device().hello();
-    let program = compiled(request, &limits, tick_hz)?;
-    if let Some(warning) = program.warnings().find(|warning| warning.is_refused_by_boards())
-        && !board.is_simulated()
-    {
-        return Err(HostError::Unmeasured { warning: warning.to_string() });
-    }
-    replace(host, program)
+    let Hello { limits, tick_hz, .. } = *host.device().hello();
+    replace(host, compiled(request, &limits, tick_hz)?)
 }
 
 /// Puts a program on the board, as [`load`] does. Its layers are as its file sets them, as the page shows them.

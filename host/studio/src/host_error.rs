@@ -17,7 +17,7 @@ pub enum HostError {
     /// The board, the line to it, or a change of what plays failed.
     #[error(transparent)]
     Play(#[from] PlayError),
-    /// The board refuses a scene that the compiler accepts.
+    /// The board, or its player, refuses a scene that the compiler accepts.
     #[error("the board does not take this scene: {0}")]
     Refused(PlayError),
     /// The world of the simulator could not be built.
@@ -37,12 +37,6 @@ pub enum HostError {
     NotInPage {
         /// The line.
         line: String,
-    },
-    /// The scene extrapolates from a measured finger, which only a simulator plays.
-    #[error("{warning}: only the simulator plays it like this")]
-    Unmeasured {
-        /// The compiler's warning.
-        warning: String,
     },
     /// A text cannot be read or edited.
     #[error(transparent)]

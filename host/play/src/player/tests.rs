@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use frixel_driver::{ByteStream, LinkClosed, PollingLink, ignore_progress};
 use frixel_felt::recorder::PlayListener;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_hil_sim::{Board, BoardMemory, Rig, RigConfig, Stroke};
 use frixel_scene::{LayerSetting, Scene, compile};
-use frixel_wire::hello::BoardLimits;
+use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::*;
 
@@ -101,9 +101,13 @@ fn playing(program: Program) -> Playing {
 
 /// A line to a board whose memory lives as long as the program.
 fn line() -> Line {
+    line_to(&RigConfig::default())
+}
+
+fn line_to(rig: &RigConfig) -> Line {
     let stroke = Stroke::sweep(0.12, 0.08, 60.0).unwrap();
     let memory = Box::leak(BoardMemory::new());
-    let mut rig = Rig::new(memory, &RigConfig::default(), stroke, 1).unwrap();
+    let mut rig = Rig::new(memory, rig, stroke, 1).unwrap();
     rig.world_mut().start_stroke();
     Line { rig, told: Told::default(), commanded_max_n: 0.0 }
 }
@@ -130,6 +134,32 @@ fn refuse_changes(player: &mut Playing) {
 }
 
 const MS: Duration = Duration::from_millis(1);
+
+#[test]
+fn only_a_simulator_plays_beyond_what_a_finger_was_measured_at() {
+    let finger = |measured_v_rms: u8| {
+        program(&format!(
+            "[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\nfriction_coefficient = 0.5\n\
+             normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 4.74\n\
+             origin = \"measured\"\ndate = \"2026-11-22\"\nmethod = \"load cell\"\nscreen = \"example\"\n\
+             friction_coefficient_interval = [0.49, 0.51]\nelectric_friction_interval_n = [0.02, 0.03]\n\
+             measured_voltage_max_v_rms = {measured_v_rms}\nmeasured_normal_load_range_n = [0.4, 0.6]\n"
+        ))
+    };
+    let (within, beyond) = (finger(150), finger(75));
+    playing(beyond.clone());
+    let board = Board { kind: BoardKind::NucleoG474re, ..Board::SIMULATOR };
+    let rig = RigConfig { board, ..RigConfig::default() };
+    let mut player = Player::new(Device::connect(PollingLink::new(line_to(&rig))).unwrap());
+    let sentence = "a real board plays only what was measured on this finger: the scene needs up to ";
+    let refused = player.start(beyond.clone(), 0, &mut ignore_progress).unwrap_err().to_string();
+    assert!(refused.starts_with(sentence), "{refused}");
+    player.start(within, 0, &mut ignore_progress).unwrap();
+    let refused = player.replace(beyond).unwrap_err();
+    assert!(refused.is_refusal() && refused.to_string().starts_with(sentence), "{refused}");
+    player.wait(100 * MS).unwrap();
+    assert_eq!(player.state().0, State::Active, "what was there plays on");
+}
 
 #[test]
 fn a_change_that_the_board_refuses_is_not_kept() {

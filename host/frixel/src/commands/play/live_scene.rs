@@ -12,7 +12,7 @@ use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
 
 use super::outputs::PlayFiles;
-use super::plan::{check_measured, print_notes};
+use super::plan::print_notes;
 use super::target::Target;
 use super::{PlayArgs, note, note_refusals};
 
@@ -150,9 +150,7 @@ fn replace<L: RecordedLink>(
     compiled: Result<Program>,
     player: &mut Player<L>,
 ) -> Result<Option<ReplaceOutcome>, PlayError> {
-    let board = player.device().hello().board;
-    let checked = compiled.and_then(|program| check_measured(&program, board).map(|()| program));
-    let program = match checked {
+    let program = match compiled {
         Ok(program) => program,
         Err(error) => {
             note(error);

@@ -10,7 +10,7 @@ use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::RigConfig;
 use frixel_play::{Feed, Simulation};
 use frixel_scene::{Program, Scene};
-use frixel_wire::hello::{BoardKind, BoardLimits};
+use frixel_wire::hello::BoardLimits;
 
 use super::super::stroke::{from_file, note_off_screen};
 use super::target::Target;
@@ -200,16 +200,6 @@ fn note_streams(program: &Program, has_feed: bool) {
     }
 }
 
-/// Rejects a program for a board with an electrode if its finger was not measured at the voltage or load that it needs.
-pub(super) fn check_measured(program: &Program, board: BoardKind) -> Result<()> {
-    match program.warnings().find(|warning| warning.is_refused_by_boards()) {
-        Some(warning) if !board.is_simulated() => bail!(
-            "a real board plays only what was measured on this finger: {warning}; fit the finger again up to this \
-             voltage and load, or lower the scene's"
-        ),
-        _ => Ok(()),
-    }
-}
 
 /// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
 /// board sends as many messages as it can, and each row is their mean.
@@ -217,33 +207,4 @@ fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -
     let least = tick_hz.div_ceil(TELEMETRY_MAX_HZ);
     let divides = |period: &u32| ticks_per_row.is_multiple_of(*period);
     if program.has_history() { (least..=ticks_per_row).find(divides).unwrap_or(ticks_per_row) } else { ticks_per_row }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use frixel_hil_sim::RigConfig;
-
-    use super::*;
-
-    #[test]
-    fn only_a_simulator_plays_beyond_what_a_finger_was_measured_at() {
-        let text = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\n[finger]\n\
-                    friction_coefficient = 0.5\nnormal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\n\
-                    skin_gap_um = 4.74\norigin = \"measured\"\ndate = \"2026-11-22\"\nmethod = \"load cell\"\n\
-                    screen = \"example\"\nfriction_coefficient_interval = [0.49, 0.51]\n\
-                    electric_friction_interval_n = [0.02, 0.03]\nmeasured_voltage_max_v_rms = 75\n\
-                    measured_normal_load_range_n = [0.4, 0.6]\n";
-        let board = RigConfig::default().board;
-        let scene = Scene::parse(text, "test.toml", &BTreeMap::new()).unwrap();
-        let program = Target::Port.compile(&scene, &board.limits, board.tick_hz).unwrap();
-        assert_eq!(program.warnings().count(), 1);
-        check_measured(&program, BoardKind::Simulator).unwrap();
-        let refused = check_measured(&program, BoardKind::NucleoG474re).unwrap_err().to_string();
-        assert!(
-            refused.starts_with("a real board plays only what was measured on this finger: the scene needs up to "),
-            "{refused}"
-        );
-    }
 }

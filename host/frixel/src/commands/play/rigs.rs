@@ -12,7 +12,7 @@ pub(super) use super::emulator::{play_on_emulator, play_on_pico};
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
-use super::plan::{Plan, check_measured};
+use super::plan::Plan;
 use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
@@ -77,6 +77,5 @@ pub(super) fn play_on_port(
     let device = port::connect_to_play(&args.port, &BOARDS, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
-    check_measured(&plan.program, hello.board)?;
     follow(args, plan, device, outputs, interrupt)
 }
