@@ -43,7 +43,7 @@ mod _frixel {
     #[pymodule_export]
     use super::score::score_scene;
     #[pymodule_export]
-    use super::simulator::simulate;
+    use super::simulator::{check_stroke, simulate};
     #[pymodule_export]
     use super::sweep::{play_cell, study_files, sweep_cells};
 

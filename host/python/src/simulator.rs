@@ -85,6 +85,12 @@ impl Stroke<'_> {
     }
 }
 
+/// Refuses rows that are no stroke of a finger.
+#[pyfunction]
+pub(crate) fn check_stroke(py: Python<'_>, stroke: Stroke<'_>) -> PyResult<()> {
+    stroke.of_rows().map(|_| ()).map_err(|error| parameter_error(py, error))
+}
+
 /// Settings of a play, an object of `python/frixel/simulator.py`.
 #[derive(FromPyObject)]
 pub(crate) struct Settings<'py> {

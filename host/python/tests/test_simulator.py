@@ -106,12 +106,13 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from a tick"),
         (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
-        (lambda: Stroke.from_arrays([-1, 1], [1, 2], [1, 2]), "t_s has finite times from 0"),
-        (lambda: Stroke.from_arrays([0, np.nan], [1, 2], [1, 2]), "t_s has finite times from 0"),
-        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, 2], [0.5, 500]), "at most 50, found 500"),
+        (lambda: Stroke.from_arrays([-1, 1], [1, 2], [1, 2]), "row 2, column t_s: -1 is below 0: give time"),
+        (lambda: Stroke.from_arrays([0, np.nan], [1, 2], [1, 2]), "row 3, column t_s: expected a number"),
+        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, 2], [0.5, 500]), "row 3, column force_n: 500 is no load"),
         (lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (5, 20))).run(), "give two places that differ"),
-        (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "both numbers, or neither"),
-        (lambda: Simulator(FLAT, stroke=Stroke.from_arrays([1, 0], [1, 2], [1, 2])).run(), "rising"),
+        (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), "row 3, column x_mm: expected a number"),
+        (lambda: Stroke.from_arrays([0], [1], [2]), "the stroke has one row only: give at least two"),
+        (lambda: Stroke.from_arrays([1, 0], [1, 2], [1, 2]), "row 3, column t_s: 0 comes after 1"),
         (lambda: Simulator("brick.toml"), "Scene.load reads a file, found 'brick.toml'"),  # type: ignore[arg-type]
         (lambda: Simulator(FLAT, seed=-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
         (lambda: Simulator(FLAT, person=1.5), "person is a whole number from 0 to 18446744073709551615, found 1.5"),  # type: ignore[arg-type]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from .model import Contact, SoftContact
 from .profiles import Finger, Screen, TouchSource
 from .simulator import Simulator
+from .stroke import Stroke
 
 _Column = NDArray[np.float64]
 
@@ -78,6 +79,7 @@ class Device:
 def simulate(
     scene: Scene, settings: Simulator, seconds: float | None
 ) -> tuple[dict[str, _Column | list[str]], str]: ...
+def check_stroke(stroke: Stroke) -> None: ...
 def fit_finger(csv: str, settings: object) -> tuple[str, str, str]: ...
 def play_fields() -> list[tuple[str, str, str]]: ...
 def parquet(

@@ -7,13 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _frixel
 from ._arguments import array, flag, real, refusal, whole
 from .errors import ParameterError
 
 __all__ = ["Stroke"]
-
-LOAD_MAX_N = 50.0
-"""Largest normal load of a finger, N."""
 
 
 class Stroke:
@@ -76,22 +74,17 @@ class Stroke:
         Raises
         ------
         ParameterError
-            The arrays are not of one length, times do not rise, or a load is none of a finger.
+            The arrays are not of one length, times do not rise, or a load is none of a finger. Messages count rows as
+            in a CSV file, whose header is row 1, and call the load `force_n`.
         """
         columns = [array(name, values) for name, values in {"t_s": t_s, "x_mm": x_mm, "y_mm": y_mm}.items()]
         load = None if load_n is None else array("load_n", load_n)
         shapes = {column.shape for column in [*columns, *([] if load is None else [load])]}
-        if len(shapes) > 1 or columns[0].ndim != 1 or columns[0].size < 2:
-            raise ParameterError(f"a stroke has arrays of one length, at least 2, found shapes {sorted(shapes)}")
-        if not np.array_equal(np.isnan(columns[1]), np.isnan(columns[2])):
-            raise ParameterError("x_mm and y_mm are both numbers, or neither is, while the finger is off the screen")
-        if not (columns[0][0] >= 0 and np.isfinite(columns[0]).all() and (np.diff(columns[0]) > 0).all()):
-            raise ParameterError("t_s has finite times from 0, each later than the one before: sort them, rising")
-        known = np.empty(0) if load is None else load[~np.isnan(load)]
-        wrong = known[~((known > 0) & (known <= LOAD_MAX_N))]
-        if wrong.size > 0:
-            raise ParameterError(f"load_n has newtons, above 0 and at most {LOAD_MAX_N:g}, found {wrong[0]:g}")
-        return _Rows(columns[0], columns[1], columns[2], load)
+        if len(shapes) > 1 or columns[0].ndim != 1:
+            raise ParameterError(f"a stroke has arrays of one length, found shapes {sorted(shapes)}")
+        stroke = _Rows(columns[0], columns[1], columns[2], load)
+        _frixel.check_stroke(stroke)
+        return stroke
 
 
 def _place(name: str, place: tuple[float, float]) -> tuple[float, float]:
