@@ -13,6 +13,7 @@ use std::time::Duration;
 use frixel_wire::fault::{Fault, State};
 use serde_json::{Value, json};
 
+use crate::additions;
 use crate::answer;
 use crate::felt::COLUMNS;
 use crate::host::{self, Host, stream_mut};
@@ -109,6 +110,18 @@ pub extern "C" fn read_text() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn edit_text() -> i32 {
     respond_bytes(|| Ok(layer_text::edit(&line())?.into_bytes()))
+}
+
+/// The layers that Add and New offer: `additions.rs` says how.
+#[unsafe(no_mangle)]
+pub extern "C" fn additions() -> i32 {
+    respond(|| Ok(additions::list()?))
+}
+
+/// Adds a layer to a text, as `additions.rs` says.
+#[unsafe(no_mangle)]
+pub extern "C" fn add_layer() -> i32 {
+    respond(|| Ok(additions::add(&line())?))
 }
 
 /// [`crate::seeded_hash`], as `hash` in hexadecimal digits.

@@ -66,7 +66,6 @@ pub(crate) fn read(text: &str) -> Result<String, TextError> {
 /// | parts | edit |
 /// |---|---|
 /// | `set`, text; path, value and the key before it, or nothing, of each change | values are changed or added |
-/// | `add`, text; name and value of each field | a layer comes behind all others |
 /// | `copy`, text, number | a copy of a layer comes right behind it, without the comment above it |
 /// | `remove`, text, number | a layer goes with the comment right above it; other comments and tables stay |
 ///
@@ -81,7 +80,6 @@ pub(crate) fn edit(request: &str) -> Result<String, TextError> {
             let &[path, value, after] = change else { return Err(TextError::Request) };
             set(&text, &Change { path: path.split(BETWEEN_KEYS).collect(), value, after })
         }),
-        "add" => add(text, &rest),
         "copy" => copy(text, number()?),
         "remove" => remove(text, number()?),
         _ => Err(TextError::Request),
@@ -166,9 +164,10 @@ fn insert(text: &str, root: &Node<'_>, change: &Change) -> Result<String, TextEr
     Ok(replaced(text, at..at, &format!("\n{indent}{entry}")))
 }
 
-fn add(text: &str, fields: &[&str]) -> Result<String, TextError> {
+/// The text with a layer behind all others, whose fields are lines.
+pub(crate) fn add(text: &str, fields: &str) -> Result<String, TextError> {
     let root = parsed(text)?;
-    let fields: Vec<String> = fields.chunks(2).map(|field| field.join(" = ")).collect();
+    let fields: Vec<&str> = fields.lines().collect();
     let layers = root.get_ref().get(LAYER).filter(|layers| node::is_value(text, layers));
     let Some((layers, elements)) = layers.and_then(|layers| Some((layers, layers.get_ref().as_array()?))) else {
         let gap = match text {

@@ -15,6 +15,7 @@
 //! [`ByteStream`](frixel_driver::ByteStream) differs.
 #![deny(unsafe_code)]
 
+mod additions;
 mod answer;
 mod check;
 pub mod exports;

@@ -30,9 +30,9 @@ test("a browser whose store answers late plays the first scene, and the next one
   await plays(page);
 });
 
-test("New offers four scenes, each with a picture and one sentence, and each plays and can be changed", async () => {
+test("New offers scenes, each with a picture and one sentence, and each plays and can be changed", async () => {
   const page = await openStudio();
-  for (const name of ["stripes", "button", "picture", "noise"]) {
+  for (const name of ["stripes", "button", "picture", "noise", "notification"]) {
     await page.click("#new");
     const card = page.locator("#new-scene article", { has: page.locator(`h3:text-is("${name}")`) });
     await page.waitForFunction(() => [...document.querySelectorAll("#new-scene canvas")].every(({ width }) => width === 240));

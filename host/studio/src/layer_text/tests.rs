@@ -48,7 +48,7 @@ fn parsed(text: &str) -> Value {
     plain(Value::Table(text.parse::<Table>().unwrap_or_else(|error| panic!("{error}\n{text}"))))
 }
 
-/// The request of an edit: `set` has changes, `add` has fields, the others have the number of a layer.
+/// The request of an edit: `set` has changes, the others have the number of a layer.
 fn request(text: &str, edit: &serde_json::Value) -> String {
     let word = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     let words = |values: &serde_json::Value| values.as_array().unwrap().iter().map(word).collect::<Vec<_>>();
@@ -66,7 +66,6 @@ fn request(text: &str, edit: &serde_json::Value) -> String {
                 ]
             })
             .collect(),
-        "add" => what.as_array().unwrap().iter().flat_map(words).collect(),
         _ => vec![word(what)],
     };
     [vec![act.clone(), text.to_owned()], parts].concat().join("\0")
@@ -188,11 +187,10 @@ fn a_layer_comes_goes_and_is_copied_and_every_other_value_stays() {
         }
         let mut more = parsed(&text);
         layers(&mut more).push(Value::Table("kind = \"edge\"\nregion = { x_mm = 1.0 }".parse().unwrap()));
-        let fields = json!({ "add": [["kind", "\"edge\""], ["region", "{ x_mm = 1 }"]] });
-        assert_eq!(parsed(&edited(&text, &fields)), more);
+        assert_eq!(parsed(&super::add(&text, "kind = \"edge\"\nregion = { x_mm = 1 }").unwrap()), more);
     }
-    assert_eq!(edited("# a\n", &json!({ "add": [["b", "1"]] })), "# a\n\n[[layer]]\nb = 1\n");
-    assert_eq!(edited("layer = []", &json!({ "add": [["b", "1"]] })), "layer = [{ b = 1 }]");
+    assert_eq!(super::add("# a\n", "b = 1").unwrap(), "# a\n\n[[layer]]\nb = 1\n");
+    assert_eq!(super::add("layer = []", "b = 1").unwrap(), "layer = [{ b = 1 }]");
 }
 
 #[test]

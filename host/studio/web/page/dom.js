@@ -93,6 +93,14 @@ export function shortName(name) {
 }
 
 /**
+ * The name of a file without its ending.
+ * @param {string} name
+ */
+export function stemOf(name) {
+  return name.replace(/\.\w+$/, "");
+}
+
+/**
  * The sentence of an error.
  * @param {unknown} error
  */

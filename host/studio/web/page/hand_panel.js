@@ -38,7 +38,7 @@ export function listenToPanel({ panel, boxes }, hands) {
   panel.onDuplicate = () => hands.duplicate();
   panel.onDelete = () => hands.delete();
   panel.onClose = () => hands.focus(undefined);
-  panel.onAdd = (beginning) => hands.add(beginning);
+  panel.onAdd = (name) => hands.add(name);
   panel.onPicture = () => hands.onPicture();
 }
 

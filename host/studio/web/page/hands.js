@@ -1,7 +1,7 @@
 // Hands on the map: in the mode *Edit* layers are selected, moved, resized and tuned, and their text changes with them.
 // @ts-check
 
-import { sentenceOf } from "./dom.js";
+import { sentenceOf, stemOf } from "./dom.js";
 import { EditedLayers } from "./edited_layers.js";
 import { HandDrag } from "./hand_drag.js";
 import { HandGrip } from "./hand_grip.js";
@@ -14,7 +14,6 @@ import { Removal } from "./removal.js";
 import { Selection } from "./selection.js";
 
 /** @import { Checked, Files, Problem } from "../engine/types" */
-/** @import { Beginning } from "./beginnings.js" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
@@ -259,10 +258,10 @@ export class Hands {
 
   /**
    * Adds a layer that is not of the scene.
-   * @param {Beginning} beginning
+   * @param {string} name Which of those that can be added.
    */
-  add(beginning) {
-    if (this.canEdit()) this.onAdd(() => this.#edit(() => this.#edits.add(beginning)));
+  add(name) {
+    if (this.canEdit()) this.onAdd(() => this.#edit(() => this.#edits.add(name, name)));
   }
 
   /**
@@ -271,7 +270,7 @@ export class Hands {
    * @param {number} aspect Its width over its height.
    */
   addPicture(name, aspect) {
-    this.#edit(() => this.#edits.addPicture(name, aspect));
+    this.#edit(() => this.#edits.add(stemOf(name), [name, aspect]));
   }
 
   /** Whether layers can come and go now; where not, says why. */

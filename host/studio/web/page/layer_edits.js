@@ -1,16 +1,14 @@
 // Layers that are added to a scene on the map, doubled, or taken out of it: each is one step of undo.
 // @ts-check
 
-import { addedLayer, freeLayerName, pictureLayer } from "./beginnings.js";
 import { TEXT_CHANGED } from "./hand_grip.js";
 import { bounds, clamp, placeOf } from "./place.js";
-import { TomlText } from "./toml_text.js";
+import { TomlText, withLayer } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
-/** @import { Beginning, Fields } from "./beginnings.js" */
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
-/** @import { Box } from "./place.js" */
+/** @import { BoxMm } from "./toml_text.js" */
 
 /** How far a copy lies from its layer, along both sides, mm. */
 const COPY_MM = 5;
@@ -37,36 +35,19 @@ export class LayerEdits {
 
   /**
    * Adds a layer where there is room, above all others; returns it.
-   * @param {Beginning} beginning
+   * @param {string} base Its name, unless another layer has that.
+   * @param {string | [file: string, aspect: number]} layer Which of those that can be added, or a picture.
    */
-  add(beginning) {
-    const fields = addedLayer(beginning, this.#layers.screen, this.#taken());
-    const { x_mm: x, y_mm: y, width_mm: width, height_mm: height } = fields.region;
-    return this.#add(fields, [x, y, width, height]);
-  }
-
-  /**
-   * Likewise a picture that the scene has.
-   * @param {string} name
-   * @param {number} aspect Its width over its height.
-   */
-  addPicture(name, aspect) {
-    const fields = pictureLayer(name, aspect, this.#layers.screen, this.#taken());
-    const { x_mm: x, y_mm: y, width_mm: width } = fields;
-    return this.#add(fields, [x, y, width, width / aspect]);
-  }
-
-  /**
-   * @param {Fields} fields
-   * @param {[number, number, number, number]} boxMm
-   */
-  #add(fields, boxMm) {
-    const toml = new TomlText(this.#editor.text);
-    const name = freeLayerName(String(fields.name), this.#names());
-    const layers = toml.value(["layer"]);
-    const at = Array.isArray(layers) ? layers.length : 0;
-    this.#make(undefined, toml.withLayer({ ...fields, name }));
-    return this.#layers.insert(newLayer(name, String(fields.kind), boxMm), at);
+  add(base, layer) {
+    const { screen } = this.#layers;
+    const name = freeLayerName(base, this.#names());
+    const screenMm = /** @type {[number, number]} */ ([screen.widthMm, screen.heightMm]);
+    const added = withLayer({ text: this.#editor.text, name, layer, screenMm, takenMm: this.#taken() });
+    this.#make(undefined, added.text);
+    const layers = new TomlText(added.text).value(["layer"]);
+    const at = Array.isArray(layers) ? layers.length - 1 : 0;
+    const { kind } = /** @type {{ kind: string }} */ (/** @type {any} */ (layers)[at]);
+    return this.#layers.insert(newLayer(name, kind, added.boxMm), at);
   }
 
   /**
@@ -130,9 +111,21 @@ export class LayerEdits {
   #taken() {
     const placed = this.#layers.all.filter(({ place }) => !place.isWholeScreen);
     return placed.flatMap(({ place: { box, copies } }) =>
-      copies.map(([dx, dy]) => /** @type {Box} */ ({ ...box, x: box.x + dx, y: box.y + dy })),
+      copies.map(([dx, dy]) => /** @type {BoxMm} */ ([box.x + dx, box.y + dy, box.width, box.height])),
     );
   }
+}
+
+/**
+ * A name that no other layer has: the same with a number.
+ * @param {string} name
+ * @param {string[]} taken
+ */
+function freeLayerName(name, taken) {
+  const base = name.replace(/ \d+$/, "");
+  let free = name;
+  for (let number = 2; taken.includes(free); number += 1) free = `${base} ${number}`;
+  return free;
 }
 
 /**
@@ -149,7 +142,7 @@ function aside(before, behind) {
  * What is known of a layer that no check has seen yet.
  * @param {string} name
  * @param {string} kind
- * @param {[number, number, number, number]} boxMm
+ * @param {BoxMm | null} boxMm
  * @returns {Layer}
  */
 function newLayer(name, kind, boxMm) {

@@ -1,16 +1,14 @@
 // The panel of the mode Edit: place and numbers of the layer that is selected, and layers to add.
 // @ts-check
 
-import { BEGINNINGS } from "./beginnings.js";
 import { element } from "./dom.js";
 import { feltLine } from "./felt.js";
 import { LayerName } from "./layer_name.js";
 import { UNCHECKED } from "./layer_edits.js";
 import { NumberRow } from "./number_row.js";
-import { numberText } from "./toml_text.js";
+import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
-/** @import { Beginning } from "./beginnings.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { LayerNumber, Most } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
@@ -64,8 +62,8 @@ export class LayerPanel {
   onDelete = () => {};
   onClose = () => {};
   /**
-   * A layer is to be added.
-   * @type {(beginning: Beginning) => void}
+   * A layer is to be added: `onAdd(name)`, one of those that can be.
+   * @type {(name: string) => void}
    */
   onAdd = () => {};
   /** Likewise a picture, which has to be chosen first. */
@@ -176,10 +174,8 @@ export class LayerPanel {
 
   /** The buttons that add layers. */
   #additions() {
-    const buttons = BEGINNINGS.map((beginning) => {
-      const { name, words, layer } = beginning;
-      const isPicture = layer.kind === "bitmap";
-      const onclick = () => (isPicture ? this.onPicture() : this.onAdd(beginning));
+    const buttons = additions().map(({ name, words, isPicture }) => {
+      const onclick = () => (isPicture ? this.onPicture() : this.onAdd(name));
       const about = { title: words, "aria-label": `Add ${name}`, onclick };
       return element("button", about, isPicture ? `${name}…` : name);
     });

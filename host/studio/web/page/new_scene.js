@@ -1,11 +1,11 @@
-// The dialog of New: four small scenes to begin with, one of them with a picture of one's own, and an empty one.
+// The dialog of New: small scenes to begin with, one of them with a picture of one's own, and an empty one.
 // @ts-check
 
-import { BEGINNINGS, sceneWith } from "./beginnings.js";
 import { choiceButton, fillDialog } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
+import { additions } from "./toml_text.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 
@@ -41,13 +41,12 @@ export class NewScene {
     const empty = choiceButton(this.#dialog, "Empty scene", () => this.onScene("untitled", EMPTY), {});
     const words = element("p", { className: "soft" }, "Begin with one of these, and change it.");
     fillDialog(this.#dialog, "New scene", [empty], words, scenes);
-    const cards = BEGINNINGS.map(({ name, words, layer }) => {
-      const text = sceneWith(words, layer);
+    const cards = additions().map(({ name, words, isPicture, scene: text }) => {
       const canvas = element("canvas", { "aria-hidden": "true" });
       const begin = choiceButton(this.#dialog, `Begin with ${name}`, () => this.onScene(name, text));
       const own = choiceButton(this.#dialog, "Choose a picture…", () => this.onPicture(), {});
       const said = element("p", { className: "fine" }, words);
-      const actions = layer.kind === "bitmap" ? [own, begin] : [begin];
+      const actions = isPicture ? [own, begin] : [begin];
       scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), said, ...actions));
       return { canvas, text };
     });

@@ -1,9 +1,9 @@
 // A picture of one's own that a person chooses, for a layer.
 // @ts-check
 
-import { pictureLayer, sceneWith } from "./beginnings.js";
-import { element, sentenceOf } from "./dom.js";
+import { element, sentenceOf, stemOf } from "./dom.js";
 import { read } from "./incoming.js";
+import { pictureIn } from "./toml_text.js";
 
 /** @import { Hands } from "./hands.js" */
 /** @import { OpenScene } from "./open_scene.js" */
@@ -27,14 +27,14 @@ export async function choosePicture() {
     input.click();
   });
   input.remove();
-  return file && pictureIn(file);
+  return file && chosen(file);
 }
 
 /**
  * @param {File} file
  * @returns {Promise<OwnPicture>}
  */
-async function pictureIn(file) {
+async function chosen(file) {
   const { files = [] } = await read(file, { texts: [], files: [], profiles: [] }).catch((error) => {
     throw new Error(`${file.name}: ${sentenceOf(error)}`);
   });
@@ -59,6 +59,6 @@ export async function beginWithPicture(scene, hands, project) {
   const picture = await choosePicture();
   if (!picture) return;
   const { name, bytes, aspect } = picture;
-  const text = sceneWith(PICTURE_COMMENT, pictureLayer(name, aspect, project.screenOfNew));
-  await hands.editNext(() => scene.open({ name: name.replace(/\.\w+$/, ""), text, files: [[name, bytes]] }));
+  const text = pictureIn(`# ${PICTURE_COMMENT}\nversion = 1\n`, name, aspect, project.screenOfNew);
+  await hands.editNext(() => scene.open({ name: stemOf(name), text, files: [[name, bytes]] }));
 }

@@ -1,10 +1,9 @@
 // The pictures of the project: a list, with a layer for each at a press.
 // @ts-check
 
-import { pictureLayer } from "./beginnings.js";
 import { byId, element, shortName } from "./dom.js";
 import { isPicture } from "./project.js";
-import { TomlText } from "./toml_text.js";
+import { pictureIn } from "./toml_text.js";
 
 /** @import { Project } from "./project.js" */
 
@@ -44,7 +43,7 @@ function row(name, bytes, project, onAdd, onRemove) {
   const add = element("button", {}, "Add as a layer");
   add.onclick = () => {
     const { naturalWidth, naturalHeight } = image;
-    onAdd(new TomlText("").withLayer(pictureLayer(name, naturalWidth / naturalHeight || 1, project.screen)));
+    onAdd(pictureIn("", name, naturalWidth / naturalHeight || 1, project.screen));
   };
   const remove = element("button", { onclick: () => onRemove(name), "aria-label": `Remove ${name}` }, "Remove");
   return element(

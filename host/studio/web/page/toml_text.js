@@ -1,7 +1,11 @@
 // The text of a scene as the map reads and edits it: the engine's module does both (host/studio/src/layer_text.rs).
 // @ts-check
 
-/** @import { Instance } from "../engine/types" */
+import { stemOf } from "./dom.js";
+
+/** @import { Instance, Screen } from "../engine/types" */
+/** @typedef {[x: number, y: number, width: number, height: number]} BoxMm */
+/** @typedef {{ name: string, words: string, isPicture: boolean, scene: string }} Addition */
 /** @typedef {(string | number)[]} Path Keys, and numbers of an array's elements. */
 /** @typedef {number | string | boolean | null | Value[] | { [key: string]: Value }} Value */
 /**
@@ -9,9 +13,6 @@
  * yet, it goes behind the key `after`, or behind all others.
  * @typedef {{ path: Path, value: Value, decimals: number, after?: string }} Change
  */
-
-/** Decimals of the numbers of a layer that is added. */
-const DECIMALS = 3;
 
 /** @type {Instance} */
 let instance;
@@ -85,15 +86,6 @@ export class TomlText {
   }
 
   /**
-   * The text with a layer behind all others.
-   * @param {{ [field: string]: Value }} layer
-   */
-  withLayer(layer) {
-    const fields = Object.entries(layer).flatMap(([field, value]) => [field, valueText(value, DECIMALS)]);
-    return this.#edited("add", ...fields);
-  }
-
-  /**
    * The text with a copy of a layer right behind it, without the comment above it.
    * @param {number} at
    */
@@ -117,6 +109,36 @@ export class TomlText {
     const request = [act, this.text, ...parts].join("\0");
     return new TextDecoder().decode(instance.callForBytes("edit_text", new TextEncoder().encode(request)));
   }
+}
+
+/**
+ * The layers that can be added: the scene that New begins with each, and for Add their names.
+ * @returns {Addition[]}
+ */
+export function additions() {
+  return instance.call("additions", new Uint8Array());
+}
+
+/**
+ * A text with a layer more, and the box of that where it is not the whole screen.
+ * @param {{ text: string, name: string, layer: string | [file: string, aspect: number], screenMm: [number, number],
+ *   takenMm: BoxMm[] }} added `layer` is a name of `additions`, or a picture.
+ * @returns {{ text: string, boxMm: BoxMm | null }}
+ */
+export function withLayer(added) {
+  return instance.call("add_layer", new TextEncoder().encode(JSON.stringify(added)));
+}
+
+/**
+ * A text with a picture alone on a screen.
+ * @param {string} text
+ * @param {string} file
+ * @param {number} aspect Its width over its height.
+ * @param {Screen} screen
+ */
+export function pictureIn(text, file, aspect, { widthMm, heightMm }) {
+  const layer = /** @type {[string, number]} */ ([file, aspect]);
+  return withLayer({ text, name: stemOf(file), layer, screenMm: [widthMm, heightMm], takenMm: [] }).text;
 }
 
 /**
