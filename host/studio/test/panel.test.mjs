@@ -283,3 +283,54 @@ test("a mistake that a hand makes is said in the panel until it is mended, and m
   await press(page, "Enter");
   await plays(page);
 });
+
+const NOTIFIED = `version = 1
+[[layer]]
+name = "buzz"
+kind = "vibration"
+live = true
+start = "off"
+frequency_hz = 90
+low_fraction = 0
+high_fraction = 0.9
+burst = { period_ms = 1000, on_ms = 500, ramp_ms = 50 }
+`;
+
+test("Play once plays a layer that starts off under a finger that slides, and nothing of it before or after", async () => {
+  const page = await openEditing(NOTIFIED);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const felt = await page.evaluate(async () => {
+    const { samples } = studioPage;
+    const add = samples.add;
+    const voltages = [];
+    samples.add = (frame) => {
+      voltages.push(...frame.voltageV.filter((_, at) => frame.speedMmPerS[at] > 20));
+      add.call(samples, frame);
+    };
+    await wait(500);
+    const before = voltages.length;
+    [...document.querySelectorAll(".layer-actions button")].find(({ textContent }) => textContent === "Play once").click();
+    await wait(2500);
+    samples.add = add;
+    const driven = voltages.filter((volts) => volts > 20).length;
+    return { before, driven, slid: voltages.length, first: voltages[0], last: voltages.at(-1) };
+  });
+  assert.equal(felt.before, 0, "no finger slides while layers are edited");
+  assert.ok(felt.driven > 0.15 * felt.slid && felt.driven < 0.6 * felt.slid, JSON.stringify(felt));
+  assert.ok(felt.first < 5 && felt.last < 5, JSON.stringify(felt));
+});
+
+test("the shape of a wave is chosen from those that the kind of the layer has", async () => {
+  const page = await openEditing(NOTIFIED);
+  await page.mouse.click(...(await onPage(page, 60, 40)));
+  const wave = page.getByLabel("wave of buzz", { exact: true });
+  assert.deepEqual(await wave.locator("option").allTextContents(), ["sine", "square"]);
+  assert.equal(await wave.inputValue(), "sine");
+  await wave.selectOption("square");
+  assert.match(await textOf(page), /wave = "square"\n/);
+  await plays(page);
+  await press(page, "Control+z");
+  assert.equal(await textOf(page), NOTIFIED);
+  await plays(page);
+  assert.equal(await wave.inputValue(), "sine");
+});

@@ -128,7 +128,7 @@ async function makeParts(engine, { map, numbers }) {
  * What needs nothing but the parts that it controls.
  * @param {Parts} parts
  */
-function makeControls({ engine, project, editor, map, finger, scope, compare, ghost, hands }) {
+function makeControls({ engine, project, editor, map, finger, scope, compare, ghost, hands, layers }) {
   const drawer = new Drawer();
   editor.onReveal = () => drawer.open();
   new FileTabs(editor, project);
@@ -150,6 +150,13 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
   hands.onEdit = () => {
     ghost.handOver();
   };
+  hands.onPlayOnce = layers.onPlayOnce = (layer) =>
+    attempt(async () => {
+      const { widthMm, heightMm } = map.screen;
+      const [x, y, width, height] = layer.boxMm ?? [0, 0, widthMm, heightMm];
+      await ghost.slideOnce({ x, y, width, height });
+      await layers.playOnce(layer);
+    });
 }
 
 /**

@@ -91,6 +91,11 @@ export class Finger {
     lay(this.#canvas, { left, top, width, height });
   }
 
+  /** Whether a person presses the map. */
+  get isDown() {
+    return this.#isDown;
+  }
+
   /** Ends the drawing. */
   close() {
     this.#isClosed = true;

@@ -1,7 +1,7 @@
 // The ghost finger: slides over the scene by itself in the simulator, until a person touches the map.
 // @ts-check
 
-import { clock } from "../clock.js";
+import { after, clock } from "../clock.js";
 import { byId } from "./dom.js";
 import { attempt } from "./notices.js";
 
@@ -9,6 +9,7 @@ import { attempt } from "./notices.js";
 /** @import { Frame, Screen } from "../engine/types" */
 /** @import { Finger } from "./finger.js" */
 /** @import { FrictionMap } from "./map.js" */
+/** @import { Box } from "./place.js" */
 /** @import { Sound } from "./sound.js" */
 
 /** The ghost rests for good after it has slid for this long, ms. */
@@ -46,6 +47,8 @@ export class Ghost {
   #isEnded = false;
   #isDismissed = false;
   #isDown = false;
+  /** A single stroke is under way. */
+  #isOnce = false;
   #isStarted = false;
   /** Whether each picture of the screen moves it. */
   #isMoving = false;
@@ -193,6 +196,32 @@ export class Ghost {
     }
     this.#isDown = true;
     this.#parts.engine.pointer({ timeMs: ms, ...placeAt(stroke, part, this.#parts.map.screen), down: true });
+  }
+
+  /**
+   * Slides once along the middle of a box, also where it rests for good, and resolves when the finger has its speed. With
+   * a finger on the map, or a board, it leaves the sliding to the person.
+   * @param {Box} box
+   */
+  async slideOnce({ x, y, width, height }) {
+    const { engine, finger } = this.#parts;
+    const { link, state } = engine.state;
+    if (this.#isOnce || this.#isMoving || finger.isDown || link !== "simulator" || state !== "active") return;
+    this.#isOnce = true;
+    /** @type {number | undefined} */
+    let beganMs;
+    const frame = (/** @type {number} */ ms) => {
+      beganMs ??= ms;
+      const part = (ms - beganMs) / STROKE_MS;
+      this.#isOnce = part <= 1 && !finger.isDown;
+      if (!finger.isDown) {
+        const at = placeAt(0, Math.min(part, 1), { widthMm: width, heightMm: height });
+        engine.pointer({ timeMs: ms, xMm: x + at.xMm, yMm: y + at.yMm, down: part <= 1 });
+      }
+      if (this.#isOnce) clock.nextFrame(frame);
+    };
+    clock.nextFrame(frame);
+    await after(2 * RAMP_PART * STROKE_MS);
   }
 
   /** At once: whoever takes over comes to a screen without a finger. */

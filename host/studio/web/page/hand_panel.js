@@ -30,11 +30,16 @@ export function listenToPanel({ panel, boxes }, hands) {
   panel.element.addEventListener("pointercancel", () => grip.cancel());
   panel.element.addEventListener("beforeinput", takeComma);
   panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
+  panel.onChoice = ({ path }, value) => {
+    grip.change([{ path, value, decimals: 0 }]);
+    grip.end();
+  };
   panel.name.onName = (name) => hands.rename(name);
   panel.name.onLeave = () => boxes.focus(hands.selected?.key);
   panel.onSide = (side, mm) => grip.setSide(side, mm);
   panel.onEnd = () => grip.end();
   panel.onText = () => hands.showText();
+  panel.onPlayOnce = () => hands.playOnce();
   panel.onDuplicate = () => hands.duplicate();
   panel.onDelete = () => hands.delete();
   panel.onClose = () => hands.focus(undefined);

@@ -13,7 +13,7 @@ import { ModeSwitch } from "./mode_switch.js";
 import { Removal } from "./removal.js";
 import { Selection } from "./selection.js";
 
-/** @import { Checked, Files, Problem } from "../engine/types" */
+/** @import { Checked, Files, Layer, Problem } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
@@ -48,6 +48,8 @@ export class Hands {
   onAdd = (add) => add();
   /** A picture is wanted as a layer. */
   onPicture = () => {};
+  /** A layer that starts off is to play once. @type {(layer: Layer) => void} */
+  onPlayOnce = () => {};
 
   /**
    * @param {Parts} parts
@@ -292,6 +294,12 @@ export class Hands {
 
   focusName() {
     if (this.selected) this.#view.panel.name.focus();
+  }
+
+  /** Plays the selected layer once. */
+  playOnce() {
+    this.grip.end();
+    if (this.selected) this.onPlayOnce(this.selected.layer);
   }
 
   duplicate() {

@@ -3,7 +3,7 @@
 
 import { byId, element, lay } from "./dom.js";
 import { LayerBoxes } from "./layer_boxes.js";
-import { layerNumbers, repeatNumbers } from "./layer_numbers.js";
+import { layerChoices, layerNumbers, repeatNumbers } from "./layer_numbers.js";
 import { LayerPanel } from "./layer_panel.js";
 import { PanelCover } from "./panel_cover.js";
 
@@ -53,7 +53,7 @@ export class HandsView {
     this.boxes.show(layers.all, selected?.key, this.#map.scale);
     // Where there is no layer, the keys lead from the map to what adds one.
     this.surface.tabIndex = layers.all.length > 0 ? -1 : 0;
-    if (selected) this.panel.show(selected, this.#numbers(selected, layers), this.reach, isNew);
+    if (selected) this.panel.show(selected, this.#tuned(selected, layers), this.reach, isNew);
     else this.panel.showNone(layers.all.length, isNew);
     const { box } = this.#map;
     const around = [byId("numbers"), byId("scope").parentElement ?? box, box.closest(".map-card") ?? box];
@@ -66,11 +66,12 @@ export class HandsView {
    * @param {EditedLayer} selected
    * @param {EditedLayers} layers
    */
-  #numbers(selected, { screen }) {
+  #tuned(selected, { screen }) {
     const { toml, at, layer } = selected;
-    const isTuned = toml !== undefined && at !== undefined;
-    const numbers = isTuned ? layerNumbers(this.#schema, toml, at, layer.kind, this.reach) : [];
-    return [...numbers, ...repeatNumbers(selected, screen)];
+    if (!toml || at === undefined) return { numbers: [], choices: [] };
+    const numbers = layerNumbers(this.#schema, toml, at, layer.kind, this.reach);
+    const choices = layerChoices(this.#schema, toml, at, layer.kind);
+    return { numbers: [...numbers, ...repeatNumbers(selected, screen)], choices };
   }
 
   /** Gives the focus to a layer, or to what is around the layers. @param {string | undefined} key */

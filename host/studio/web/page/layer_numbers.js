@@ -14,6 +14,10 @@ import { layerFields } from "./completion.js";
  * @typedef {{ field: string, label: string, words: string, unit: string, value: number, path: Path, decimals: number,
  *   step: number, least: number, most: number, limit?: number, min: number, max: number }} LayerNumber
  */
+/**
+ * A word of a layer that is chosen, and the words that it may be.
+ * @typedef {{ field: string, label: string, words: string, value: string, path: Path, options: string[] }} LayerChoice
+ */
 
 /** What a place is made of, which a hand drags. */
 const PLACE = ["x", "y", "height"];
@@ -108,6 +112,23 @@ export function layerNumbers(schema, toml, at, kind, reach) {
       max,
     };
   });
+}
+
+/**
+ * The shape of a layer's wave, where it has one.
+ * @param {Schema} schema
+ * @param {TomlText} toml
+ * @param {number} at Number of the layer among those of the file.
+ * @param {string} kind
+ * @returns {LayerChoice[]}
+ */
+export function layerChoices(schema, toml, at, kind) {
+  const { wave } = layerFields(schema, { kind });
+  if (!wave) return [];
+  const path = ["layer", at, "wave"];
+  const options = wave.words.map(String);
+  const value = String(toml.value(path) ?? toml.value(["defaults", "wave"]) ?? options[0]);
+  return [{ field: "wave", label: "wave", words: "shape of the pattern", value, path, options }];
 }
 
 /**

@@ -5,12 +5,12 @@ import { element } from "./dom.js";
 import { feltLine } from "./felt.js";
 import { LayerName } from "./layer_name.js";
 import { UNCHECKED } from "./layer_edits.js";
-import { NumberRow } from "./number_row.js";
+import { ChoiceRow, NumberRow } from "./number_row.js";
 import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { LayerNumber, Most } from "./layer_numbers.js" */
+/** @import { LayerChoice, LayerNumber, Most } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
@@ -40,6 +40,8 @@ export class LayerPanel {
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, by field. */
   #rows = /** @type {Map<string, NumberRow>} */ (new Map());
+  /** Likewise of the words that are chosen. */
+  #choices = /** @type {Map<string, ChoiceRow>} */ (new Map());
   /** Where the layer is. @type {Place | undefined} */
   #place;
   /** For what the verdict was made. */
@@ -52,12 +54,18 @@ export class LayerPanel {
    */
   onNumber = () => {};
   /**
+   * A word of the layer is chosen.
+   * @type {(choice: LayerChoice, word: string) => void}
+   */
+  onChoice = () => {};
+  /**
    * Likewise a side of its box.
    * @type {(side: Side, mm: number) => void}
    */
   onSide = () => {};
   onEnd = () => {};
   onText = () => {};
+  onPlayOnce = () => {};
   onDuplicate = () => {};
   onDelete = () => {};
   onClose = () => {};
@@ -90,20 +98,20 @@ export class LayerPanel {
 
   /**
    * @param {EditedLayer} edited
-   * @param {LayerNumber[]} numbers
+   * @param {{ numbers: LayerNumber[], choices: LayerChoice[] }} tuned
    * @param {Most} reach That the ends of the sliders are for.
    * @param {boolean} isNew Whether another layer was selected before.
    */
-  show(edited, numbers, reach, isNew) {
+  show(edited, { numbers, choices }, reach, isNew) {
     const { layer, place, at } = edited;
     this.#place = place;
     // While a layer is selected, its rows stay in their order.
-    const fields = numbers.map(({ field }) => field).sort();
+    const fields = [...numbers, ...choices].map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
-    const madeFor = JSON.stringify([edited.key, head, layer.kind, fields, reach.naturalN, reach.reachN]);
+    const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields, reach.naturalN, reach.reachN]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
     const isOther = madeFor !== this.#madeFor;
-    if (isOther) this.#make(edited, numbers);
+    if (isOther) this.#make(edited, numbers, choices);
     this.#madeFor = madeFor;
     // A name changes in place: the next press, on a slider or a button, is under way.
     this.#nameLayer(layer, isOther);
@@ -117,6 +125,7 @@ export class LayerPanel {
       input.title = why;
     }
     for (const number of numbers) this.#rows.get(number.field)?.show(number);
+    for (const choice of choices) this.#choices.get(choice.field)?.show(choice);
     this.#showFelt(layer, reach);
     this.element.hidden = false;
   }
@@ -130,7 +139,7 @@ export class LayerPanel {
     this.name.show(name, isOther);
     this.#kind.textContent = name === kind ? "" : kind;
     for (const [side, label] of SIDES) this.#sides.get(side)?.setAttribute("aria-label", `${label} of ${name}, mm`);
-    for (const row of this.#rows.values()) row.nameLayer(name);
+    for (const row of [...this.#rows.values(), ...this.#choices.values()]) row.nameLayer(name);
   }
 
   /**
@@ -185,10 +194,12 @@ export class LayerPanel {
   /**
    * @param {EditedLayer} edited
    * @param {LayerNumber[]} numbers
+   * @param {LayerChoice[]} choices
    */
-  #make({ layer: { name }, at }, numbers) {
+  #make({ layer: { name, startsOn }, at }, numbers, choices) {
     this.#sides.clear();
     this.#rows.clear();
+    this.#choices.clear();
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
     const named = at === undefined ? element("b", {}, name) : this.name.element;
@@ -200,22 +211,31 @@ export class LayerPanel {
       this.element.append(
         this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
-        element("div", { className: "layer-numbers" }, ...numbers.map((number) => this.#row(number, name))),
+        element(
+          "div",
+          { className: "layer-numbers" },
+          ...choices.map((choice) => this.#choice(choice, name)),
+          ...numbers.map((number) => this.#row(number, name)),
+        ),
         this.#note,
         this.#why,
-        this.#actions(),
+        this.#actions(startsOn),
       );
     }
     this.element.append(this.#additions());
     this.element.scrollTop = 0;
   }
 
-  #actions() {
+  /** @param {boolean} startsOn */
+  #actions(startsOn) {
     const action = (/** @type {string} */ words, /** @type {string} */ title, /** @type {() => void} */ onclick) =>
       element("button", { type: "button", title, onclick }, words);
     return element(
       "div",
       { className: "layer-actions" },
+      ...(startsOn
+        ? []
+        : [action("Play once", "Plays this layer, which starts off, under a finger that slides", () => this.onPlayOnce())]),
       action("Duplicate", "A copy beside it (Ctrl+D)", () => this.onDuplicate()),
       action("Text", "To its text (Ctrl+Enter)", () => this.onText()),
       action("Delete", "Take it out (Delete)", () => this.onDelete()),
@@ -249,6 +269,17 @@ export class LayerPanel {
     row.onNumber = (changed, value) => this.onNumber(changed, value);
     row.onEnd = () => this.onEnd();
     this.#rows.set(number.field, row);
+    return row.element;
+  }
+
+  /**
+   * @param {LayerChoice} choice
+   * @param {string} layer
+   */
+  #choice(choice, layer) {
+    const row = new ChoiceRow(choice, layer);
+    row.onChoice = (changed, word) => this.onChoice(changed, word);
+    this.#choices.set(choice.field, row);
     return row.element;
   }
 

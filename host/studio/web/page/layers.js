@@ -33,6 +33,8 @@ export class Layers {
    * @type {(layer: Layer) => boolean}
    */
   onChoose = () => false;
+  /** A layer that starts off is to play once. @type {(layer: Layer) => void} */
+  onPlayOnce = () => {};
 
   /**
    * @param {Engine} engine
@@ -141,7 +143,10 @@ export class Layers {
       number.value = `${state.gain}`;
     };
     const times = element("label", {}, "× ", number);
-    return element("div", { className: "live" }, element("label", { className: "check" }, isOn, " on"), slider, times);
+    const on = element("label", { className: "check" }, isOn, " on");
+    const once = element("button", { type: "button", "aria-label": `Play ${label} once` }, "Play once");
+    once.onclick = () => this.onPlayOnce(layer);
+    return element("div", { className: "live" }, on, slider, times, ...(layer.startsOn ? [] : [once]));
   }
 
   /**
@@ -163,6 +168,18 @@ export class Layers {
       return state.gain === layer.gain ? [] : [`${layer.name} × ${state.gain}`];
     });
     this.onLive(changes);
+  }
+
+  /**
+   * Plays a layer that is off once, with all of its copies.
+   * @param {Layer} layer Of the last check, which may be newer than the scene that plays.
+   */
+  async playOnce({ controls }) {
+    if (this.isSceneLoading || controls.length === 0) {
+      notify("The scene is on its way to the board: play its layer once it is there.");
+      return;
+    }
+    for (const number of controls) await this.#engine.control(`trigger ${number}`);
   }
 
   /**

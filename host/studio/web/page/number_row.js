@@ -1,11 +1,11 @@
-// A number of a layer as a slider and a field.
+// A number of a layer as a slider and a field, and a word of it as a list.
 // @ts-check
 
 import { element } from "./dom.js";
 import { clamp } from "./place.js";
 import { numberText } from "./toml_text.js";
 
-/** @import { LayerNumber } from "./layer_numbers.js" */
+/** @import { LayerChoice, LayerNumber } from "./layer_numbers.js" */
 
 /** Places that a slider has at least. */
 const POSITIONS = 100;
@@ -126,6 +126,40 @@ export class NumberRow {
     const { least, most, limit } = this.#number;
     Object.assign(this.#slider, { min: String(least), max: String(most) });
     if (limit !== undefined) this.#track.style.setProperty("--limit", String((limit - least) / (most - least)));
+  }
+}
+
+export class ChoiceRow {
+  #choice;
+  #select;
+  /** @type {HTMLElement} */
+  element;
+  /** Another word is chosen. */
+  onChoice = (/** @type {LayerChoice} */ _choice, /** @type {string} */ _word) => {};
+
+  /**
+   * @param {LayerChoice} choice
+   * @param {string} layer
+   */
+  constructor(choice, layer) {
+    this.#choice = choice;
+    const options = choice.options.map((word) => element("option", { value: word }, word));
+    this.#select = element("select", {}, ...options);
+    this.#select.onchange = () => this.onChoice(this.#choice, this.#select.value);
+    const said = element("span", {}, choice.label, element("small", {}, choice.words));
+    this.element = element("div", { className: "layer-choice", title: choice.words }, said, this.#select);
+    this.nameLayer(layer);
+  }
+
+  /** @param {string} layer */
+  nameLayer(layer) {
+    this.#select.setAttribute("aria-label", `${this.#choice.label} of ${layer}`);
+  }
+
+  /** @param {LayerChoice} choice */
+  show(choice) {
+    this.#choice = choice;
+    this.#select.value = choice.value;
   }
 }
 
