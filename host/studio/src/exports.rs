@@ -10,6 +10,7 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
+use frixel_felt::judge::weber_steps;
 use frixel_wire::fault::{Fault, State};
 use serde_json::{Value, json};
 
@@ -92,6 +93,12 @@ pub extern "C" fn map() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn layouts() -> i32 {
     respond(|| Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS })))
+}
+
+/// What the page knows of perception: `weberStepsPerE`, the Weber steps of a friction that is e times as large.
+#[unsafe(no_mangle)]
+pub extern "C" fn perception() -> i32 {
+    respond(|| Ok(json!({ "weberStepsPerE": weber_steps(1.0, std::f64::consts::E) })))
 }
 
 /// [`crate::used_files`].

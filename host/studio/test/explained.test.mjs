@@ -20,8 +20,8 @@ test("a press on a number, and a key, say what it is", async () => {
   const notice = page.locator("#notice");
   const meanings = {
     "Felt friction": /simulated finger feels/,
-    "Above bare glass": /Weber step is a factor of 1\.11/,
-    Drive: /adds friction, and takes none away/,
+    "Stronger than glass by": /\(Weber steps\).*Weber step is a factor of 1\.11/,
+    "Drive voltage": /\(V rms\).*adds friction, and takes none away/,
     Speed: /Speed of the simulated finger/,
   };
   for (const [width, height] of [[1366, 657], [390, 844]]) {

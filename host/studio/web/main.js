@@ -52,7 +52,9 @@ const FIRST_SCENE = "brick";
 async function start() {
   const laid = { map: makeMap(), numbers: new Numbers() };
   const engine = await createEngine();
-  editWith(await engine.instance());
+  const instance = await engine.instance();
+  editWith(instance);
+  laid.numbers.weberStepsPerE = instance.call("perception", new Uint8Array()).weberStepsPerE;
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();

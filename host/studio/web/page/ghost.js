@@ -40,6 +40,7 @@ const PASSIVE_KEYS = ["Tab", "Shift", "Control", "Alt", "Meta"];
 
 const SLIDES = "A ghost finger is sliding: press to take over.";
 const RESTS = "Press and slide to feel it.";
+const STOPPED = "Nothing plays: press Play, at the top.";
 
 export class Ghost {
   #parts;
@@ -93,7 +94,7 @@ export class Ghost {
     if (this.#isEnded) return;
     this.#isStarted = true;
     this.#parts.finger.isGuided = true;
-    this.#say(SLIDES);
+    this.#say();
     this.wake();
   }
 
@@ -111,7 +112,7 @@ export class Ghost {
     this.#isMoving = false;
     this.#parts.finger.isGuided = false;
     this.#parts.finger.redraw();
-    this.#say(RESTS);
+    this.#say();
   }
 
   /** Ends for good, and the words go. */
@@ -136,12 +137,14 @@ export class Ghost {
   /** The board plays, or another one: what the words say is of the simulator. */
   showBoard() {
     if (this.#parts.engine.state.link !== "simulator" && !this.#isDismissed) this.dismiss();
+    this.#say();
     this.wake();
   }
 
-  /** @param {string} words */
-  #say(words) {
-    byId("first-hint").textContent = words;
+  #say() {
+    const { link, state } = this.#parts.engine.state;
+    const isStopped = link === "simulator" && state === "disarmed";
+    byId("first-hint").textContent = isStopped ? STOPPED : this.#isStarted && !this.#isEnded ? SLIDES : RESTS;
   }
 
   #offerSound() {

@@ -7,8 +7,6 @@ import { notify } from "./notices.js";
 /** @import { Frame } from "../engine/types" */
 /** @typedef {{ friction?: number, weber?: number, voltage?: number, speed?: number }} Shown */
 
-/** Smallest change of friction that a finger feels: a factor of 1.11 (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). */
-const WEBER_STEP = Math.log(1.11);
 /** Below this voltage, V rms, the drive adds nothing: what is felt beside bare glass is the finger's own noise. */
 const DRIVES_ABOVE = 1;
 /** Numbers are means over this many samples, so that they can be read. */
@@ -28,6 +26,8 @@ export class Numbers {
   /** @type {Record<string, number>} */
   #means = {};
   #isSliding = false;
+  /** The noticeable steps of a friction that is e times as large, as the engine's module says. */
+  weberStepsPerE = NaN;
 
   constructor() {
     /** @param {[key: string, title: string, unit: string, meaning: string, kind?: string]} field */
@@ -48,9 +48,12 @@ export class Numbers {
       "About says what that means.";
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
     const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
-    const above = "How much more friction is felt now than on bare glass, in Weber steps; none where nothing is driven.";
-    add("weber", "Above bare glass", "Weber steps", `${above} ${step}`, "felt");
-    add("voltage", "Drive", "V rms", "Voltage on the electrode: it adds friction, and takes none away.", "voltage");
+    const above =
+      "How much more friction is felt now than on bare glass, in noticeable steps (Weber steps); none where nothing is " +
+      "driven.";
+    add("weber", "Stronger than glass by", "noticeable steps", `${above} ${step}`, "felt");
+    const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
+    add("voltage", "Drive voltage", "V", volts, "voltage");
     add("speed", "Speed", "mm/s", "Speed of the simulated finger. Below 5 mm/s no friction is shown.");
     this.#show({});
   }
@@ -66,12 +69,22 @@ export class Numbers {
     if (this.#isSliding) {
       const felt = this.#mean("felt", feltN);
       if (felt !== undefined)
-        Object.assign(values, { friction: felt * 1000, weber: weberSteps(felt, naturalN, values.voltage) });
+        Object.assign(values, { friction: felt * 1000, weber: this.#weberSteps(felt, naturalN, values.voltage) });
     }
     this.#show(contact ? values : { voltage: 0 });
     if (contact) return;
     this.#means = {};
     this.#isSliding = false;
+  }
+
+  /**
+   * Weber steps above bare glass.
+   * @param {number} feltN
+   * @param {number} naturalN
+   * @param {number} [voltageVRms]
+   */
+  #weberSteps(feltN, naturalN, voltageVRms = Infinity) {
+    return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) * this.weberStepsPerE;
   }
 
   /**
@@ -127,16 +140,6 @@ export class Numbers {
     value.parentElement?.classList.toggle("words", isStill);
     unit.hidden = isStill;
   }
-}
-
-/**
- * Weber steps above bare glass.
- * @param {number} feltN
- * @param {number} naturalN
- * @param {number} [voltageVRms]
- */
-function weberSteps(feltN, naturalN, voltageVRms = Infinity) {
-  return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) / WEBER_STEP;
 }
 
 /**
