@@ -231,3 +231,22 @@ test("a voltage that the board does not let through is a warning at its line, co
   await writeScene(page, WHOLE_SCREEN_GRATING);
   assert.ok(await count.isHidden());
 });
+
+test("a computer that is too slow for real time says so while a finger slides, and no longer than it is", async () => {
+  const page = await openScene(RIGHT_HALF);
+  const said = await page.evaluate(async () => {
+    const pace = document.getElementById("pace");
+    const told = () => (pace.hidden ? "" : pace.textContent);
+    const found = [];
+    // Late by less than the simulator catches up with, by more, and by nothing.
+    for (const ms of [40, 112, 0]) {
+      beLate(ms);
+      await slide(10, 50, 40, ms > 0 ? 40 : 8);
+      found.push(told());
+    }
+    lift(50, 40);
+    return found;
+  });
+  assert.match(said[1], /^This computer plays at 0\.1 of real time: /);
+  assert.deepEqual([said[0], said[2]], ["", ""]);
+});

@@ -43,6 +43,11 @@ export function addSimulatedClock() {
     for (let at = 0; at < ms; at += STEP_MS) await stepBoards();
     isHung = false;
   };
+  let lateMs = 0;
+  /** From now on each step comes so much later, as that of a computer that is too slow. */
+  globalThis.beLate = (ms) => {
+    lateMs = ms;
+  };
   /** Events happen at the time of this clock. */
   Object.defineProperty(Event.prototype, "timeStamp", { get: () => nowMs, configurable: true });
 
@@ -75,7 +80,7 @@ export function addSimulatedClock() {
   };
 
   async function stepBoards() {
-    nowMs += STEP_MS;
+    nowMs += STEP_MS + lateMs;
     steps += 1;
     await Promise.all([...boards].map((board) => board.step()));
   }

@@ -251,6 +251,11 @@ function showWhatIsFelt(parts) {
     lag.feel(frame);
     lens.feel(frame, parts.reach);
   };
+  const pace = byId("pace");
+  engine.onPace = (part) => {
+    pace.hidden = part === 1;
+    pace.textContent = `This computer plays at ${part} of real time: curves have steps, and the finger lifts between.`;
+  };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
     parts.hasSlid = true;
@@ -263,6 +268,7 @@ function showWhatIsFelt(parts) {
   };
   board.onState = () => {
     showOutcome();
+    if (engine.state.link !== "simulator") pace.hidden = true;
     lag.showBoard();
     ghost.showBoard();
     if (parts.hasSlid && board.isPlaying) hint.hidden = true;

@@ -15,6 +15,12 @@ const IDLE_STEP_MS = 96;
 const IDLE_AFTER_MS = 1000;
 /** A worker that was held up longer than this, ms, skips the time in place of running after it. */
 const LAG_MAX_MS = 100;
+/**
+ * So much time is looked at to see how much of it the board plays, ms; more than this part is all of it: a computer is
+ * held up now and then.
+ */
+const PACE_MS = 2000;
+const PACE_WHOLE = 0.9;
 /** Without a sign of life the board is stepped on for this long, ms, so that its host timeout acts; then it rests. */
 const REST_AFTER_MS = 2000;
 /** Samples of a stroke that a replay can have. */
@@ -35,6 +41,8 @@ let stroke = { samples: [], isOver: true };
  */
 let replay = null;
 let reported = "";
+/** Since when time is counted, since 1970, ms; the ticks that were played since; and the pace that was told. */
+let counted = { sinceMs: 0, ticks: 0, told: 1 };
 /** Until then steps are short, and when the last one was, since 1970, ms. */
 let busyUntilMs = 0;
 let steppedMs = 0;
@@ -63,6 +71,7 @@ function step() {
   const sinceLifeMs = now - lastLifeMs;
   if (sinceLifeMs > REST_AFTER_MS) {
     setClock(clock.rate);
+    countAnew();
     return;
   }
   let ticks = Math.floor(tickAt(now) - engine.plain("simulator_tick"));
@@ -73,7 +82,29 @@ function step() {
     ticks = STEP_MS * TICKS_PER_MS;
   }
   if (ticks > 0) run(ticks, sinceLifeMs <= LIFE_MS);
+  count(ticks);
   if (replay && engine.plain("simulator_tick") >= replay.endTick) endReplay(true);
+}
+
+function countAnew() {
+  counted = { ...counted, sinceMs: epochMs(), ticks: 0 };
+}
+
+/**
+ * Tells how much of the time is played where that changes: time that a slow computer skips is felt as steps.
+ * @param {number} ticks That were played now.
+ */
+function count(ticks) {
+  // A board without a finger is stepped seldom, and a replay is slow on purpose.
+  if (epochMs() > busyUntilMs || replay) countAnew();
+  counted.ticks += ticks;
+  const ms = epochMs() - counted.sinceMs;
+  if (ms < PACE_MS) return;
+  const part = counted.ticks / TICKS_PER_MS / ms;
+  const pace = part > PACE_WHOLE ? 1 : Math.ceil(10 * part) / 10;
+  if (pace !== counted.told) tell({ type: "pace", pace });
+  counted.told = pace;
+  countAnew();
 }
 
 /**

@@ -70,6 +70,11 @@ export class Engine {
   /** @type {(state: T.State) => void} */
   onState = () => {};
   /**
+   * The simulator plays another part of real time than before: `onPace(part)`, 1 where it plays all of it.
+   * @type {(part: number) => void}
+   */
+  onPace = () => {};
+  /**
    * A worker has failed: `{ error }`, a sentence.
    * @type {(failure: { error: string }) => void}
    */
@@ -114,6 +119,8 @@ export class Engine {
     if (message.type === "frame") {
       this.onFrames({ ...message.frame, state: this.#state.state });
       this.onAudio(message.sound, message.soundTick, message.frame.slowness);
+    } else if (message.type === "pace") {
+      this.onPace(message.pace);
     } else if (message.type === "state") {
       this.#reportSimulator(message.state, message.fault ?? undefined);
     } else if (message.type === "failure") {

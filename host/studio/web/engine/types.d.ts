@@ -185,7 +185,8 @@ export type FrameMessage = { type: "frame"; frame: WorkerFrame };
 export type FromBoard =
   | Failure
   | (FrameMessage & { sound: Float32Array; soundTick: number })
-  | ({ type: "state" } & Reported);
+  | ({ type: "state" } & Reported)
+  | { type: "pace"; pace: number };
 export type FromHost =
   | Failure
   | FrameMessage
