@@ -20,7 +20,7 @@ test("a press on a number, and a key, say what it is", async () => {
   const notice = page.locator("#notice");
   const meanings = {
     "Felt friction": /simulated finger feels/,
-    "Stronger than glass by": /\(Weber steps\).*Weber step is a factor of 1\.11/,
+    "Above bare glass": /noticeable steps \(Weber steps\).*Weber step is a factor of 1\.11/,
     "Drive voltage": /\(V rms\).*adds friction, and takes none away/,
     Speed: /Speed of the simulated finger/,
   };

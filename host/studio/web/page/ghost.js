@@ -202,8 +202,8 @@ export class Ghost {
   }
 
   /**
-   * Slides once along the middle of a box, also where it rests for good, and resolves when the finger has its speed. With
-   * a finger on the map, or a board, it leaves the sliding to the person.
+   * Slides once along the middle of a box, also where it rests for good, and resolves when the finger has its speed.
+   * With a finger on the map, or a board, it leaves the sliding to the person.
    * @param {Box} box
    */
   async slideOnce({ x, y, width, height }) {

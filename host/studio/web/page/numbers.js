@@ -49,9 +49,9 @@ export class Numbers {
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
     const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
     const above =
-      "How much more friction is felt now than on bare glass, in noticeable steps (Weber steps); none where nothing is " +
-      "driven.";
-    add("weber", "Stronger than glass by", "noticeable steps", `${above} ${step}`, "felt");
+      "How much stronger than bare glass the friction is now, in noticeable steps (Weber steps); none where nothing " +
+      "is driven.";
+    add("weber", "Above bare glass", "steps", `${above} ${step}`, "felt");
     const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
     add("voltage", "Drive voltage", "V", volts, "voltage");
     add("speed", "Speed", "mm/s", "Speed of the simulated finger. Below 5 mm/s no friction is shown.");
