@@ -18,7 +18,7 @@ const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
 /// The tests in which the page meets the command `frixel`. All others run without it.
 const COMMAND_TESTS: &str = "command.test.mjs";
-/// Takes the pictures of docs/studio.
+/// Takes the pictures of docs/design/studio.
 const SHOTS: &str = "shots.mjs";
 /// Files of tests that run at once: those on the machine's clock wait, while others compute.
 const FILES_AT_ONCE: u32 = 2;
@@ -72,7 +72,7 @@ fn site() -> Result<PathBuf, String> {
     absolute(&site)
 }
 
-/// Builds the page, and takes the pictures of docs/studio.
+/// Builds the page, and takes the pictures of docs/design/studio.
 pub(crate) fn take_shots() -> Result<(), String> {
     let page = studio::build()?;
     let folder = folder();

@@ -137,7 +137,8 @@ static ADDITIONS: [Addition; 11] = [
         lines: |layout| {
             let width = layout.length(7.0, 7.0);
             format!(
-                "kind = \"edge\"\n{}{}width_mm = {width}\nridge_fraction = 0.25\nclick_fraction = 0.75\nclick_ms = 15\n",
+                "kind = \"edge\"\n{}{}width_mm = {width}\nridge_fraction = 0.25\n\
+                 click_fraction = 0.75\nclick_ms = 15\n",
                 layout.region(),
                 layout.middle()
             )

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE, compile,
-    is_picture,
+    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE,
+    compile, is_picture,
 };
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;

@@ -194,7 +194,7 @@ fn reference() -> String {
     for (heading, fields) in documented() {
         let is_its = |line: &str| line.starts_with('#') && line.trim_start_matches(['#', ' ']) == heading;
         assert!(DOCS.lines().any(is_its), "the guide has no heading {heading}");
-        page += &format!("\n## {heading}\n\n{}", markdown(&fields));
+        page.extend(["\n## ", &heading, "\n\n", &markdown(&fields)]);
     }
     page
 }

@@ -11,12 +11,12 @@ use frixel_model::{
     Carrier, Coating, SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound, TouchPath,
     VACUUM_PERMITTIVITY_F_PER_M, Waveform,
 };
+use frixel_scene::Screen;
 use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
 use crate::commands::argument;
 use crate::commands::terminal::print;
 use crate::scene_file;
-use frixel_scene::Screen;
 
 /// Largest contact of a fingertip, m2: that of the boards' worst-case electrode (assumed).
 const CONTACT_M2: f64 = 2e-4;

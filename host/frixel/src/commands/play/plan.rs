@@ -200,7 +200,6 @@ fn note_streams(program: &Program, has_feed: bool) {
     }
 }
 
-
 /// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
 /// board sends as many messages as it can, and each row is their mean.
 fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -> u32 {
