@@ -73,7 +73,7 @@ fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, pn
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_compression(png::Compression::High);
     let bytes = if let Some((palette, indices)) = indexed(pixels) {
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_palette(palette.concat());
