@@ -25,7 +25,7 @@ const TARGET: &str = "target";
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 /// There is no page, and no checkout that could have one.
 const NO_PAGE: &str = "there is no frixel-studio.html beside this command, and this folder is in no checkout of frixel, \
-                       which could build one: give --page FILE.html";
+                       where `cargo xtask studio` makes one: give --page FILE.html";
 /// Folders of a checkout that the page is made from.
 const SOURCES: [&str; 11] = [
     "firmware",
