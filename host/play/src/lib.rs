@@ -35,7 +35,7 @@ pub use feed::{Feed, FeedError};
 pub use frixel_felt::{GoesOn, TO_THE_END};
 pub use judged::{judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
-pub use player::{Player, Replaced};
+pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;
 pub use rig_stream::RigStream;
 pub use simulation::{SimPlayer, Simulated, Simulation, SimulationError, simulate, simulate_by};

@@ -8,6 +8,7 @@ use frixel_felt::recorder::PlayListener as _;
 use frixel_model::ParameterError;
 use frixel_scene::{Clamped, LayerSetting, Program};
 use frixel_wire::fault::{Fault, State};
+use frixel_wire::hello::BoardKind;
 use frixel_wire::message::{Refusal, Telemetry};
 
 use crate::error::{PlayError, StopReason, is_refusal};
@@ -72,7 +73,7 @@ impl<L: Link + Recorded> Player<L> {
         telemetry_period_ticks: u32,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(), PlayError> {
-        self.check_measured(&program)?;
+        check_measured(&program, self.device.hello().board)?;
         upload::start(&mut self.device, &program, progress)?;
         self.playing = Some(LiveLayers::new(program));
         self.begin()?;
@@ -95,14 +96,6 @@ impl<L: Link + Recorded> Player<L> {
             self.begin()?;
         }
         Ok(())
-    }
-
-    /// Refuses a program whose finger was not measured at the voltage or load that it needs, unless the board is
-    /// simulated.
-    fn check_measured(&self, program: &Program) -> Result<(), PlayError> {
-        let is_real = !self.device.hello().board.is_simulated();
-        let warning = program.warnings().find(|warning| is_real && warning.is_refused_by_boards());
-        warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning: warning.to_string() }))
     }
 
     /// The board has begun to play.
@@ -133,7 +126,7 @@ impl<L: Link + Recorded> Player<L> {
     }
 
     fn replace_layers(&mut self, layers: LiveLayers) -> Result<Replaced, PlayError> {
-        self.check_measured(layers.program())?;
+        check_measured(layers.program(), self.device.hello().board)?;
         let faded_out = match self.upload(&layers) {
             Err(DeviceError::Refused { refusal: Refusal::BitmapPoolFull { .. }, .. }) => {
                 self.replace_alone(&layers)?;
@@ -403,6 +396,13 @@ impl<L: Link + Recorded> Player<L> {
     pub fn recorder_mut(&mut self) -> &mut L::Recorder {
         self.device.link_mut().recorder_mut()
     }
+}
+
+/// Refuses a program whose finger was not measured at the voltage or load that it needs, unless the board is simulated.
+/// [`Player::start`] and [`Player::replace`] ask this, too; a caller asks it before it writes anything.
+pub fn check_measured(program: &Program, board: BoardKind) -> Result<(), PlayError> {
+    let warning = program.warnings().find(|warning| !board.is_simulated() && warning.is_refused_by_boards());
+    warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning: warning.to_string() }))
 }
 
 #[cfg(test)]

@@ -29,11 +29,11 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
     let reference = Reference::new(program);
     let mut reported = Vec::new();
     for excess in excesses(&program.header, reference.pieces(), within, PLACES_MAX) {
-        let layers: Vec<RecordedLayer> = excess
+        let layers: Vec<LayerWithRecord> = excess
             .layers
             .iter()
             .filter_map(|number| Some((*played.get(*number)?, program.records.get(*number)?)))
-            .map(|(layer, record)| RecordedLayer { layer, record })
+            .map(|(layer, record)| LayerWithRecord { layer, record })
             .collect();
         let ridges = added_ridges(program, &excess.layers);
         let ridges = ridges_in_reach_as_largest(&program.header, &reference, &excess.layers, &ridges, within)
@@ -109,7 +109,7 @@ impl Program {
 }
 
 /// A layer with its record.
-struct RecordedLayer<'a> {
+struct LayerWithRecord<'a> {
     layer: &'a Layer,
     record: &'a Record,
 }
@@ -117,7 +117,7 @@ struct RecordedLayer<'a> {
 /// Layers that exceed the reach together.
 struct Demand<'a> {
     /// From bottom to top.
-    layers: Vec<RecordedLayer<'a>>,
+    layers: Vec<LayerWithRecord<'a>>,
     cell: Cell,
     within: Interval<f64>,
     reach: &'a Reach,
@@ -137,7 +137,7 @@ impl Demand<'_> {
     fn sides(&self, asked: Interval<f64>, log: &Log) -> Vec<Side> {
         let Self { within, reach, .. } = self;
         let above = match &self.layers[..] {
-            [RecordedLayer { layer, .. }] => layer.above,
+            [LayerWithRecord { layer, .. }] => layer.above,
             _ => Above::Natural,
         };
         let (reference, offset_n) = match above {
@@ -194,7 +194,7 @@ impl Demand<'_> {
     fn cure_below(&self, above: Above) -> &'static str {
         match &self.layers[..] {
             [_] if above == Above::Zero => "raise it, or lower `normal_load_n`",
-            [RecordedLayer { layer, .. }] if layer.blend == Blend::Replace => "raise it",
+            [LayerWithRecord { layer, .. }] if layer.blend == Blend::Replace => "raise it",
             [_] => "raise it, or the ground beneath it, by a layer with more friction",
             _ => "raise one of them, or the ground beneath them",
         }
@@ -203,7 +203,7 @@ impl Demand<'_> {
     /// The fields of a single layer that exceed the reach together with its click, with their values; `None` for
     /// several layers, or for a layer without a click.
     fn clicked(&self, log: &Log) -> Option<String> {
-        let [RecordedLayer { layer, record }] = &self.layers[..] else { return None };
+        let [LayerWithRecord { layer, record }] = &self.layers[..] else { return None };
         let gain = f64::from(record.gain);
         let click_n = Some(gain * f64::from(record.layer.click()?.height_n)).filter(|click_n| *click_n > 0.0)?;
         let Clicked { bases, click } = layer.kind.clicked(&layer.places, &record.layer)?;
@@ -219,7 +219,7 @@ impl Demand<'_> {
 
     /// The layers' names with the verb, followed by the place if there are several layers.
     fn asking(&self, clicked: Option<String>) -> String {
-        if let [RecordedLayer { layer, .. }] = &self.layers[..] {
+        if let [LayerWithRecord { layer, .. }] = &self.layers[..] {
             let gain = layer.places.has("gain").then(|| format!("with its gain of {}", layer.gain));
             let insertions: Vec<String> = [gain, clicked].into_iter().flatten().collect();
             return if insertions.is_empty() {
@@ -244,11 +244,11 @@ impl Demand<'_> {
     fn place(&self, most: bool) -> usize {
         match &self.layers[..] {
             [] => 0,
-            [RecordedLayer { layer, record }] => {
+            [LayerWithRecord { layer, record }] => {
                 let most = most == (layer.gain >= 0.0);
                 layer.places.field(layer.kind.extreme(most, &layer.places, &record.layer))
             }
-            [.., RecordedLayer { layer, .. }] => layer.places.table(),
+            [.., LayerWithRecord { layer, .. }] => layer.places.table(),
         }
     }
 }

@@ -13,7 +13,7 @@ use super::optimisation::Optimisation;
 use super::program::Program;
 
 /// A record with the layer that it was made from.
-struct RecordedLayer<'l> {
+struct LayerWithRecord<'l> {
     layer: &'l SceneLayer,
     record: Record,
 }
@@ -26,16 +26,16 @@ pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut 
         .zip(&records)
         .filter_map(|(layer, record)| Some((record.layer.bitmap_crc32()?, *layer)))
         .collect();
-    let mut items: Vec<RecordedLayer> =
-        layers.iter().zip(records).map(|(layer, record)| RecordedLayer { layer, record }).collect();
+    let mut items: Vec<LayerWithRecord> =
+        layers.iter().zip(records).map(|(layer, record)| LayerWithRecord { layer, record }).collect();
     flatten(&mut items, &program.points, log);
     drop_covered(&mut items, &program.header, log);
     drop_idle(&mut items, log);
     fold(&mut items, log);
-    let setting = |item: &RecordedLayer| LayerSetting { on: item.layer.starts_on, gain: item.record.gain };
+    let setting = |item: &LayerWithRecord| LayerSetting { on: item.layer.starts_on, gain: item.record.gain };
     program.start = items.iter().map(setting).collect();
     let pattern =
-        |item: &RecordedLayer| item.layer.pattern_ms.iter().map(|ms| Duration::from_secs_f64(1e-3 * ms)).collect();
+        |item: &LayerWithRecord| item.layer.pattern_ms.iter().map(|ms| Duration::from_secs_f64(1e-3 * ms)).collect();
     program.patterns = items.iter().map(pattern).collect();
     (program.titles, program.records) = items.into_iter().map(|item| (item.layer.title.clone(), item.record)).unzip();
     compact_points(program);
@@ -43,7 +43,7 @@ pub(super) fn optimise(program: &mut Program, layers: &[&SceneLayer], log: &mut 
 }
 
 /// Replaces layers whose target friction is the same everywhere and at all times by constants.
-fn flatten(items: &mut [RecordedLayer], points: &[Point], log: &mut Log) {
+fn flatten(items: &mut [LayerWithRecord], points: &[Point], log: &mut Log) {
     for item in items.iter_mut().filter(|item| !item.layer.live) {
         let layer = &item.record.layer;
         if layer.is_streamed() || matches!(layer, Layer::Constant(_)) {
@@ -58,10 +58,10 @@ fn flatten(items: &mut [RecordedLayer], points: &[Point], log: &mut Log) {
 }
 
 /// Drops layers that a layer above replaces entirely.
-fn drop_covered(items: &mut Vec<RecordedLayer>, header: &Header, log: &mut Log) {
+fn drop_covered(items: &mut Vec<LayerWithRecord>, header: &Header, log: &mut Log) {
     let mut number = 0;
     while let Some(item) = items.get(number) {
-        let hides = |above: &&RecordedLayer| {
+        let hides = |above: &&LayerWithRecord| {
             let always = !above.layer.live && !above.record.layer.is_streamed();
             always && above.record.blend == Blend::Replace && covers(above.record.region, item.record.region, header)
         };
@@ -99,7 +99,7 @@ fn covers(region: Region, other: Region, header: &Header) -> bool {
 }
 
 /// Drops constants without effect: adding zero, a factor of one, and zero on a bare screen.
-fn drop_idle(items: &mut Vec<RecordedLayer>, log: &mut Log) {
+fn drop_idle(items: &mut Vec<LayerWithRecord>, log: &mut Log) {
     let mut bare = true;
     items.retain(|item| {
         let own = match item.record.layer {
@@ -124,10 +124,10 @@ fn drop_idle(items: &mut Vec<RecordedLayer>, log: &mut Log) {
 
 /// Merges a constant into the constant directly below it if both have the same region. The result is bit-identical to
 /// the board's.
-fn fold(items: &mut Vec<RecordedLayer>, log: &mut Log) {
+fn fold(items: &mut Vec<LayerWithRecord>, log: &mut Log) {
     let mut number = 0;
     while let (Some(below), Some(above)) = (items.get(number), items.get(number + 1)) {
-        let constant = |item: &RecordedLayer| match item.record.layer {
+        let constant = |item: &LayerWithRecord| match item.record.layer {
             Layer::Constant(Constant { electric_friction_n }) if !item.layer.live => {
                 Some(item.record.gain * electric_friction_n)
             }

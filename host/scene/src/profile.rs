@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use super::compile_error::CompileError;
 use super::nearest::Nearest;
+use super::printable::brief;
 
 /// A finger, a screen or a touch source.
 ///
@@ -42,7 +43,7 @@ pub struct NamedProfile {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ProfileError {
     /// None is bundled under this name.
-    #[error("no bundled {kind} is called `{name}`: {}", advice(.nearest))]
+    #[error("no bundled {kind} is called `{}`: {}", brief(.name), advice(.nearest))]
     NotBundled {
         /// What messages call the kind.
         kind: &'static str,

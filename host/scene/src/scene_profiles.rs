@@ -38,8 +38,8 @@ pub(super) struct Profiles {
 /// Reads `screen` and `finger` of a scene: tables, names, or nothing.
 pub(super) fn read(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<Profiles> {
     let (screen_place, finger_place) = (fields.place("screen"), fields.place("finger"));
-    let screen = In { field: &tables::scene::SCREEN, table: screen::read, example: Screen::example };
-    let finger = In { field: &tables::scene::FINGER, table: finger::read, example: FingerProfile::example };
+    let screen = ProfileField { field: &tables::scene::SCREEN, table: screen::read, example: Screen::example };
+    let finger = ProfileField { field: &tables::scene::FINGER, table: finger::read, example: FingerProfile::example };
     let has_finger = fields.has("finger");
     let screen = screen.read(fields, files, log);
     let finger = finger.read(fields, files, log);
@@ -49,7 +49,7 @@ pub(super) fn read(fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Opt
 }
 
 /// Where one of the two stands in a scene file.
-struct In<P> {
+struct ProfileField<P> {
     field: &'static FieldSpec,
     /// Reads it from a table of the scene.
     table: fn(Fields, &mut Log) -> Option<P>,
@@ -57,7 +57,7 @@ struct In<P> {
     example: fn() -> P,
 }
 
-impl<P: Profile> In<P> {
+impl<P: Profile> ProfileField<P> {
     fn read(&self, fields: &mut Fields, files: &dyn Files, log: &mut Log) -> Option<(P, ProfileSource)> {
         if !fields.has(self.field.name) {
             // The field is known even if it is absent.

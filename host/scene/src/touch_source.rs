@@ -70,6 +70,8 @@ impl Display for TouchSource {
     }
 }
 
+/// Reads touch sources.
+///
 /// ```
 /// use frixel_hil_sim::TouchConfig;
 /// use frixel_scene::Profile;

@@ -21,6 +21,7 @@ mod watch;
 mod with_log;
 
 use frixel_lab::simulate::{PlayOptions, PlayOptionsError};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
@@ -114,7 +115,9 @@ pub(super) struct PlayArgs {
 impl PlayArgs {
     /// The options of a play on the simulator in an ideal world, into a folder.
     pub(super) fn ideal(scene: &Path, out: &Path) -> Result<Self> {
-        let typed = [scene.as_os_str(), "--ideal".as_ref(), "--out".as_ref(), out.as_os_str()];
+        let mut into = OsString::from("--out=");
+        into.push(out);
+        let typed = [into.as_os_str(), "--ideal".as_ref(), "--".as_ref(), scene.as_os_str()];
         let command = Self::augment_args(Command::new("play").no_binary_name(true));
         Ok(Self::from_arg_matches(&command.try_get_matches_from(typed)?)?)
     }

@@ -20,7 +20,7 @@ use super::terminal::{note, note_interrupted, note_understood};
 /// Options that say where the simulated finger goes.
 #[derive(Clone, Debug, Args)]
 pub(super) struct StrokeArgs {
-    /// Path of the finger: `human`, `human-rough`, `sweep` or a CSV file. Default: a sweep.
+    /// Finger's path: `human`, `human-rough`, `sweep` or a CSV file. Default: over every layer.
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "from")]
     stroke: Option<PathBuf>,
     /// Start of a straight stroke, in mm from the screen's top left corner.

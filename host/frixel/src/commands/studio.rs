@@ -24,8 +24,8 @@ const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 /// There is no page, and no checkout that could have one.
-const NO_PAGE: &str = "there is no frixel-studio.html beside this command, and this folder is in no checkout of frixel, \
-                       where `cargo xtask studio` makes one: give --page FILE.html";
+const NO_PAGE: &str = "there is no frixel-studio.html beside this command, and this folder is in no checkout of \
+                       frixel, where `cargo xtask studio` makes one: give --page FILE.html";
 /// Folders of a checkout that the page is made from.
 const SOURCES: [&str; 11] = [
     "firmware",
@@ -45,7 +45,7 @@ const NO_SOURCES: [&str; 2] = ["target", "node_modules"];
 
 #[derive(Debug, Args)]
 pub(super) struct StudioArgs {
-    /// The page, as `cargo xtask studio` builds it. Default: frixel-studio.html beside this command, or that of the checkout.
+    /// The page that `cargo xtask studio` builds. Default: the one beside this command, or that of the checkout.
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
     /// Print the page's path, and do not open the browser.

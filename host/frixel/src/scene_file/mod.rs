@@ -203,10 +203,10 @@ impl ProfileNames {
         Ok(scene)
     }
 
-    /// This finger and screen on a board, with all voltage that a scene drives by default and no friction: what board
-    /// and finger give is there, without any scene.
+    /// A program without friction of its own: its reach and its contact are those of this finger and screen on a board,
+    /// at the highest voltage that a scene has by default.
     pub(crate) fn without_scene(&self, limits: &BoardLimits, tick_hz: u32) -> Result<Program, SceneFileError> {
-        let scene = Scene::parse(NO_SCENE, "the finger", &BTreeMap::new())?;
+        let scene = Scene::parse(NO_SCENE, "a scene of nothing", &BTreeMap::new())?;
         Ok(compile(&self.applied_to(scene)?, limits, tick_hz)?)
     }
 }

@@ -31,7 +31,7 @@ impl Fitted {
     ) -> Result<Self, FitError> {
         let levels: Vec<_> = strokes.iter().map(|stroke| stroke.top_level).collect();
         let mut draws = Draws::new(&levels, seed);
-        let fitted = (0..DRAWS).filter_map(|_| {
+        let fitted = (0..DRAWS).take_while(|_| (search.goes_on)().is_continue()).filter_map(|_| {
             let drawn = draws.draw().into_iter().filter_map(|index| strokes.get(index));
             let drawn: Vec<Observation> = drawn.flat_map(|stroke| &stroke.observations).copied().collect();
             search.run(&drawn, &best.contact)

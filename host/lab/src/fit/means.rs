@@ -153,7 +153,8 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
     let mut drawn = || -> Vec<Observation> {
         observations.iter().zip(&freedoms).map(|(one, freedom)| random.drawn(one, *freedom)).collect()
     };
-    let replicates = (0..DRAWS).filter_map(|_| search.run(&drawn(), &best.contact)).collect();
+    let goes_on = (0..DRAWS).take_while(|_| (search.goes_on)().is_continue());
+    let replicates = goes_on.filter_map(|_| search.run(&drawn(), &best.contact)).collect();
     let fitted = Fitted::of_draws(best, replicates, Draws::of_errors())?;
     check_scatter(&observations, &freedoms, &fitted)?;
     Ok(FittedData {

@@ -58,12 +58,17 @@ pub enum ReplayError {
         /// What the file is.
         name: String,
     },
-    /// Its scene has mistakes.
+    /// Its scene or a profile has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// A profile of it is not bundled, or has mistakes.
-    #[error(transparent)]
-    Profile(#[from] ProfileError),
+    /// A profile of another frixel.
+    #[error("this frixel has no {what} called {}: use the one that recorded it", brief(.name))]
+    NotBundled {
+        /// What it is.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
     /// Its stroke has mistakes.
     #[error("its stroke cannot be read: {0}")]
     Stroke(#[from] StrokeFileError),
@@ -205,7 +210,11 @@ fn profile<P: Profile>(option: Option<&String>, file: &str, files: &FileBytes) -
         None if name == PlayOptions::FILE => return Err(missing(file)),
         None => name.clone(),
     };
-    Ok(Some(NamedProfile { name, text }.read()?))
+    let read = NamedProfile { name, text }.read();
+    read.map(Some).map_err(|error| match error {
+        ProfileError::NotBundled { kind, name, .. } => ReplayError::NotBundled { what: kind, name },
+        ProfileError::Mistakes(mistakes) => mistakes.into(),
+    })
 }
 
 /// The stroke of a file.

@@ -116,7 +116,7 @@ fn count(verdicts: &Verdicts, fingers: usize) -> String {
 fn told_apart(levels: &[&LevelScore], fingers: usize) -> Option<String> {
     let first = |titles: &[LayerTitle]| titles.first().map(ToString::to_string).unwrap_or_default();
     let pair = |level: &&LevelScore| {
-        let pair = format!("{} and {}", first(&level.lower), first(&level.higher));
+        let pair = format!("{} from {}", first(&level.lower), first(&level.higher));
         if fingers == 1 { pair } else { format!("{pair} by {}", count(&level.simulated_fingers, fingers)) }
     };
     let surely = if fingers == 1 { "not surely " } else { "" };
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(score(8, bars(8, [8, 8]), levels(8)).sentence(), all);
         assert_eq!(
             score(8, bars(8, [8, 8]), levels(2)).sentence(),
-            format!("{all}; told apart: layer 3 \"bar 3\" and layer 4 \"bar 4\" by 2")
+            format!("{all}; told apart: layer 3 \"bar 3\" from layer 4 \"bar 4\" by 2")
         );
         assert_eq!(
             score(8, bars(8, [8, 5]), Vec::new()).sentence(),

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::{Trial, TrialFinger};
 use crate::GeneratedStroke;
+use crate::simulate::screen_m;
 
 /// Where a simulated finger goes.
 #[derive(Clone, Debug)]
@@ -85,9 +86,8 @@ impl TrialPlan {
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, StrokeError> {
         let first_stroke = finger.map_or(1, |finger| 1 + (finger.person - 1) * self.strokes);
-        let (width_m, height_m) = (f64::from(program.header.screen_width_m), f64::from(program.header.screen_height_m));
         let strokes = match &self.stroke {
-            TrialStroke::Generated(stroke) => self.generated(*stroke, [width_m, height_m], first_stroke, goes_on)?,
+            TrialStroke::Generated(stroke) => self.generated(*stroke, screen_m(program), first_stroke, goes_on)?,
             TrialStroke::Own(stroke) => vec![("file".to_owned(), stroke.clone())],
         };
         let trials = (first_stroke..).zip(strokes).flat_map(|(number, (stroke_name, stroke))| {

@@ -33,7 +33,7 @@ pub fn check_duration(seconds: f64, tick_hz: u32) -> Result<(), PlayOptionsError
 }
 
 /// The part of the time, from 0 to 1, for which the finger is beside a screen of this width and height, in m, in the
-/// first `seconds` of a stroke. Refuses a stroke that is never on it.
+/// first `seconds` of a stroke. Refuses a stroke that is beside it whenever the finger is down.
 pub fn part_off_screen(stroke: &Stroke, [width_m, height_m]: [f64; 2], seconds: f64) -> Result<f64, PlayOptionsError> {
     let end_s = seconds.min(stroke.duration_s());
     let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);
@@ -45,8 +45,9 @@ pub fn part_off_screen(stroke: &Stroke, [width_m, height_m]: [f64; 2], seconds: 
             off += 1;
         }
     }
-    match on {
-        0 => Err(PlayOptionsError::OffScreen { width_mm: side_mm(width_m), height_mm: side_mm(height_m) }),
+    match (on, off) {
+        (0, 0) => Ok(0.0),
+        (0, _) => Err(PlayOptionsError::OffScreen { width_mm: side_mm(width_m), height_mm: side_mm(height_m) }),
         _ => Ok(f64::from(off) / f64::from(on + off)),
     }
 }

@@ -42,7 +42,7 @@ pub struct Plan {
     pub touch: Vec<String>,
     /// Number of simulated people, from the first one.
     pub people: u64,
-    /// What their strokes are made after.
+    /// How their strokes are made.
     #[serde(default)]
     pub stroke: GeneratedStroke,
     /// Strokes of each person.

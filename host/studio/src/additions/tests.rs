@@ -40,7 +40,9 @@ fn whatever_can_be_added_is_felt_and_weaker_too() {
                 let problem = program.diagnostics.iter().find(|found| found.kind != DiagnosticKind::Note);
                 assert!(problem.is_none(), "{text}{problem:?}");
                 let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-                for found in judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers {
+                let judged = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers;
+                assert!(!judged.is_empty(), "{text}");
+                for found in judged {
                     let is_clicked = found.click.is_none_or(|click| click.verdict == Verdict::Felt);
                     if found.verdict != Verdict::Felt || !is_clicked {
                         weak.push(format!("{text}{gain}{}", feel::sentence(&found)));
@@ -76,6 +78,11 @@ fn layers_fit_screens_of_any_size_and_their_lengths_the_layers() {
             let is_in = x >= 0.0 && y >= 0.0 && x + width <= screen_mm[0] && y + height <= screen_mm[1];
             assert!(is_in && width >= 0.2 * screen_mm[0], "{text}");
             let lengths = text.lines().filter_map(|line| line.split_once(" = "));
+            let of = |key| lengths.clone().find(|(field, _)| *field == key);
+            let length = |key| of(key).map(|(_, mm)| mm.parse::<f64>().unwrap());
+            assert!(length("width_mm").is_none_or(|mm| mm > 0.0 && mm <= width), "{text}");
+            let range = length("wavelength_min_mm").zip(length("wavelength_max_mm"));
+            assert!(range.is_none_or(|(min, max)| min < max), "{text}");
             let lengths = lengths.filter(|(field, _)| field.starts_with("wavelength") || *field == "rim_width_mm");
             let most_mm = 0.25 * width.min(height);
             for (field, mm) in lengths.map(|(field, mm)| (field, mm.parse::<f64>().unwrap())) {

@@ -96,15 +96,22 @@ function countAnew() {
  */
 function count(ticks) {
   // A board without a finger is stepped seldom, and a replay is slow on purpose.
-  if (epochMs() > busyUntilMs || replay) countAnew();
+  if (epochMs() > busyUntilMs || replay || counted.sinceMs === 0) {
+    tellPace(1);
+    countAnew();
+  }
   counted.ticks += ticks;
   const ms = epochMs() - counted.sinceMs;
   if (ms < PACE_MS) return;
   const part = counted.ticks / TICKS_PER_MS / ms;
-  const pace = part > PACE_WHOLE ? 1 : Math.ceil(10 * part) / 10;
+  tellPace(part > PACE_WHOLE ? 1 : Math.ceil(10 * part) / 10);
+  countAnew();
+}
+
+/** @param {number} pace */
+function tellPace(pace) {
   if (pace !== counted.told) tell({ type: "pace", pace });
   counted.told = pace;
-  countAnew();
 }
 
 /**

@@ -164,6 +164,10 @@ fn replace<L: RecordedLink>(
             "; its pictures and those before it do not fit on the board together: the output faded out meanwhile",
             dropped_gains,
         ),
+        Err(unmeasured @ PlayError::Unmeasured { .. }) => {
+            note(format_args!("frixel: {unmeasured}: the previous scene keeps playing"));
+            return Ok(None);
+        }
         Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
             return Ok(Some(ReplaceOutcome::Refused));

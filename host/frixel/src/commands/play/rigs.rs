@@ -3,7 +3,7 @@
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
-use frixel_play::RigStream;
+use frixel_play::{RigStream, check_measured};
 use frixel_scene::Scene;
 
 use super::super::port::{self, BOARDS};
@@ -77,5 +77,6 @@ pub(super) fn play_on_port(
     let device = port::connect_to_play(&args.port, &BOARDS, args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
+    check_measured(&plan.program, hello.board)?;
     follow(args, plan, device, outputs, interrupt)
 }
