@@ -79,6 +79,7 @@ impl PlayOptions {
         let tick_hz = rig.board.tick_hz;
         let ticks_per_row = ticks_per_row(self.rows_hz, tick_hz)?;
         let seconds = self.seconds.or(self.stream_s);
+        seconds.map_or(Ok(()), |seconds| check_duration(seconds, tick_hz))?;
         let stroke = match stroke {
             Some(stroke) => Some(stroke),
             None => self.stroke.generated(screen_m(program), seconds, self.seed)?,
