@@ -17,7 +17,7 @@ use super::printable::brief;
 /// assert!(FingerProfile::parse("radius = 8", "mine.toml").is_err());
 /// ```
 pub trait Profile: Sized {
-    /// What messages call it: `finger`, `screen` or `touch source`.
+    /// Its kind in messages: `finger`, `screen` or `touch source`.
     const KIND: &'static str;
 
     /// The names of the bundled ones, the default first.
@@ -45,7 +45,7 @@ pub enum ProfileError {
     /// None is bundled under this name.
     #[error("no bundled {kind} is called `{}`: {}", brief(.name), advice(.nearest))]
     NotBundled {
-        /// What messages call the kind.
+        /// Its kind in messages.
         kind: &'static str,
         /// The name.
         name: String,

@@ -79,6 +79,16 @@ fn number(value: f64) -> f64 {
     (1000.0 * value).round() / 1000.0
 }
 
+/// The lines of a ridge with a click across the middle of a box; `repeat` is the line of its copies.
+fn ridge(layout: &Layout, repeat: &str, width_mm: f64) -> String {
+    format!(
+        "kind = \"edge\"\n{}{repeat}{}width_mm = {width_mm}\nridge_fraction = 0.25\n\
+         click_fraction = 0.75\nclick_ms = 15\n",
+        layout.region(),
+        layout.middle()
+    )
+}
+
 /// All layers to begin with, in the order of their buttons.
 static ADDITIONS: [Addition; 11] = [
     Addition {
@@ -134,15 +144,7 @@ static ADDITIONS: [Addition; 11] = [
         name: "edge",
         words: "One ridge with a click, for a finger that crosses it.",
         place: Place::Box { new_mm: [45.0, 10.0, 30.0, 60.0], part: PART },
-        lines: |layout| {
-            let width = layout.length(7.0, 7.0);
-            format!(
-                "kind = \"edge\"\n{}{}width_mm = {width}\nridge_fraction = 0.25\n\
-                 click_fraction = 0.75\nclick_ms = 15\n",
-                layout.region(),
-                layout.middle()
-            )
-        },
+        lines: |layout| ridge(layout, "", layout.length(7.0, 7.0)),
     },
     Addition {
         name: "button",
@@ -164,14 +166,8 @@ static ADDITIONS: [Addition; 11] = [
             // One copy for each detent.
             let [x, y, width, height] = layout.0.unwrap_or_default();
             let step = number(0.2 * width);
-            let first = Layout(Some([x, y, step, height]));
-            format!(
-                "kind = \"edge\"\n{}repeat = {{ columns = 5, dx_mm = {step} }}\n{}width_mm = {}\n\
-                 ridge_fraction = 0.25\nclick_fraction = 0.75\nclick_ms = 15\n",
-                first.region(),
-                first.middle(),
-                number(0.7 * step)
-            )
+            let repeat = format!("repeat = {{ columns = 5, dx_mm = {step} }}\n");
+            ridge(&Layout(Some([x, y, step, height])), &repeat, number(0.7 * step))
         },
     },
     Addition {

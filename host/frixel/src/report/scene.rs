@@ -47,7 +47,7 @@ pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
     Section { name: "scene", question: "What the scene leaves out", panel, table, notes, rows }
 }
 
-/// What `frixel check` says of the program, but for what is felt of it.
+/// The result of `frixel check` for the program, without verdicts.
 fn check(program: &Program) -> SceneCheck {
     let rig = RigConfig::default();
     SceneCheck::of(program, &rig.board.limits, &BoardCosts::of(program, &rig, 0), Judgement::default())

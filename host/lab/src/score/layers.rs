@@ -25,6 +25,18 @@ pub struct Verdicts {
     pub unknown: usize,
 }
 
+impl Verdicts {
+    /// The verdict of the one finger that these count.
+    pub(crate) fn of_one(&self) -> Verdict {
+        match *self {
+            Self { felt: 1.., .. } => Verdict::Felt,
+            Self { felt_by_some: 1.., .. } => Verdict::NearThreshold,
+            Self { unknown: 1.., .. } => Verdict::Unknown,
+            _ => Verdict::NotFelt,
+        }
+    }
+}
+
 impl FromIterator<Verdict> for Verdicts {
     fn from_iter<I: IntoIterator<Item = Verdict>>(verdicts: I) -> Self {
         let mut counts = Self::default();

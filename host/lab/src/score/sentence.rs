@@ -77,21 +77,12 @@ fn titles(layers: &[&LayerScore]) -> String {
 /// Layers by the verdict of the only finger.
 fn by_verdict(layers: &[&LayerScore]) -> String {
     let of_verdict = |verdict: Verdict| {
-        let layers = layers.iter().copied().filter(|layer| verdict_of_one(&layer.simulated_fingers) == verdict);
+        let layers = layers.iter().copied().filter(|layer| layer.simulated_fingers.of_one() == verdict);
         let layers = ordered(layers);
         (!layers.is_empty()).then(|| format!("{}: {}", verdict.words(), titles(&layers)))
     };
     let verdicts = [Verdict::NotFelt, Verdict::NearThreshold, Verdict::Unknown];
     verdicts.into_iter().filter_map(of_verdict).collect::<Vec<String>>().join("; ")
-}
-
-/// The verdict of the only finger, which does not surely notice it.
-fn verdict_of_one(verdicts: &Verdicts) -> Verdict {
-    match *verdicts {
-        Verdicts { felt_by_some: 1.., .. } => Verdict::NearThreshold,
-        Verdicts { unknown: 1.., .. } => Verdict::Unknown,
-        _ => Verdict::NotFelt,
-    }
 }
 
 /// Layers with how many of several fingers notice them.

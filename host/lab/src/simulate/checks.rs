@@ -1,4 +1,4 @@
-//! What is asked of the rows, the duration and the stroke of a play.
+//! Checks of a play's rows, duration and stroke.
 
 use frixel_hil_sim::Stroke;
 

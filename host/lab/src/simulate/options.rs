@@ -132,8 +132,8 @@ impl StrokeOptions {
         self.name.as_deref() == Some(PlayOptions::FILE)
     }
 
-    /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers a
-    /// screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
+    /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers
+    /// a screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
     pub fn generated(
         &self,
         screen_m: [f64; 2],

@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::parameter::Value;
 use crate::GeneratedStroke;
 use crate::hash::sha256;
-use crate::score::{Score, TrialFinger, TrialPlan, Verdicts};
+use crate::score::{Score, TrialFinger, TrialPlan};
 
 /// Digits of a hash that make a key.
 const KEY_DIGITS: usize = 32;
@@ -189,7 +189,7 @@ impl Cell {
         let layer = |layer: &crate::score::LayerScore| LayerResult {
             layer: layer.layer.to_string(),
             table: layer.layer.number().table,
-            verdict: only(&layer.simulated_fingers),
+            verdict: layer.simulated_fingers.of_one(),
             contrast_weber_steps: layer.contrast_weber_steps,
         };
         CellResult {
@@ -204,15 +204,5 @@ impl Cell {
             layers: score.layers.iter().map(layer).collect(),
             means: score.metrics.iter().map(|metric| (metric.key.to_owned(), metric.mean)).collect(),
         }
-    }
-}
-
-/// The verdict of the one finger.
-fn only(verdicts: &Verdicts) -> Verdict {
-    match verdicts {
-        Verdicts { felt: 1.., .. } => Verdict::Felt,
-        Verdicts { felt_by_some: 1.., .. } => Verdict::NearThreshold,
-        Verdicts { unknown: 1.., .. } => Verdict::Unknown,
-        _ => Verdict::NotFelt,
     }
 }

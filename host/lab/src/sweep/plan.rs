@@ -64,7 +64,7 @@ pub struct Plan {
     pub parameters: BTreeMap<String, Values>,
 }
 
-/// The profiles that a plan names; `text` reads the files of those that are not bundled.
+/// The profiles that a plan names. A bundled one needs no file; `text` reads the files of the others.
 fn named<P: Profile, E>(
     names: &[String],
     text: impl Fn(&'static str, &str) -> Result<String, E>,

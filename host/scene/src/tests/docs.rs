@@ -132,7 +132,7 @@ fn numbers(field: &FieldSpec) -> Option<Range> {
     }
 }
 
-/// The unit, or what the number is a share of.
+/// The unit of a key, or of what its number is a share.
 fn unit(field: &FieldSpec) -> &'static str {
     let pure = ["fraction", "factor"].into_iter().find(|pure| field.name.ends_with(&format!("_{pure}")));
     let unit = || numbers(field).and_then(|range| range.unit.split(',').next()).unwrap_or_default();
@@ -162,7 +162,7 @@ fn written(number: f64) -> String {
     format!("{sign}{}", grouped.collect::<String>())
 }
 
-/// What stands above the tables of the reference.
+/// The text above the tables of the reference.
 fn reference_head() -> String {
     let AmountFields { newtons, fraction, factor } = LOW;
     let [newtons, fraction, factor] = [newtons, fraction, factor].map(|field| range(&field));

@@ -164,13 +164,10 @@ fn replace<L: RecordedLink>(
             "; its pictures and those before it do not fit on the board together: the output faded out meanwhile",
             dropped_gains,
         ),
-        Err(unmeasured @ PlayError::Unmeasured { .. }) => {
-            note(format_args!("frixel: {unmeasured}: the previous scene keeps playing"));
-            return Ok(None);
-        }
         Err(refused) if refused.is_refusal() => {
             note(format_args!("frixel: {refused}: the previous scene keeps playing"));
-            return Ok(Some(ReplaceOutcome::Refused));
+            let was_put = !matches!(refused, PlayError::Unmeasured { .. });
+            return Ok(was_put.then_some(ReplaceOutcome::Refused));
         }
         Err(error) => return Err(error),
     };
