@@ -90,13 +90,22 @@ pub(crate) fn run_step(name: &str) -> Result<(), String> {
     crate::needs::require(step.needs).and_then(|()| (step.run)())
 }
 
+/// Checks the lints of everything, with the test programs that `cargo test` leaves out.
 fn lints() -> Result<(), String> {
-    cargo("lints", ".", &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"], &[])
+    let targets = ["--all-targets", "--test", "emulated", "--test", "real_time"];
+    cargo(
+        "lints",
+        ".",
+        &[&["clippy", "--workspace", "--locked"], &targets[..], &["--", "-D", "warnings"]].concat(),
+        &[],
+    )
 }
 
-/// The tests that `cargo test` leaves out and that need no other program.
+/// The tests that `cargo test` leaves out and that need no other program. Those in real time run one by one.
 fn tests() -> Result<(), String> {
-    run("tests", &mut beside_default("test"))
+    run("tests", &mut beside_default("test"))?;
+    let one_by_one = ["test", "--locked", "--test", "real_time", "--", "--test-threads", "1"];
+    cargo("tests in real time", ".", &one_by_one, &[])
 }
 
 /// This command of cargo for the packages beside the default ones: with their features, so that nothing is compiled

@@ -21,7 +21,7 @@ struct Part {
     run: fn() -> Result<(), String>,
 }
 
-const PARTS: [Part; 11] = [
+const PARTS: [Part; 10] = [
     Part {
         name: "tables",
         what: "every f32 and every 32-bit code through the inverse tables",
@@ -40,12 +40,6 @@ const PARTS: [Part; 11] = [
         what: "`frixel finger calibrate` and `frixel finger fit` of 200 people with 20 seeds each, against steady friction",
         needs: &[],
         run: fit,
-    },
-    Part {
-        name: "experiments",
-        what: "calibration on a virtual board in real time; on an idle machine",
-        needs: &[],
-        run: experiments,
     },
     Part {
         name: "scenes",
@@ -126,11 +120,6 @@ fn people() -> Result<(), String> {
 
 fn fit() -> Result<(), String> {
     ignored("fits through the commands", &["--release", "--package", "frixel", "--lib"], &["calibrate::coverage"])
-}
-
-fn experiments() -> Result<(), String> {
-    let one_by_one = ["designer::", "--test-threads", "1"];
-    ignored("experiments in real time", &["--package", "frixel", "--test", "main"], &one_by_one)
 }
 
 fn faults() -> Result<(), String> {

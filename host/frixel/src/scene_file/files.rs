@@ -54,8 +54,8 @@ impl SceneFiles {
         self.scene.path()
     }
 
-    /// Whether any of the files was saved after it was read. Returns false between two checks, a tenth of a second
-    /// apart, and while a file is being written.
+    /// Checks the files, once every [`CHECK_PERIOD`](super::CHECK_PERIOD). Returns whether one of them was saved after
+    /// it was read; false while a file is being written.
     pub(crate) fn is_saved(&mut self) -> bool {
         once(&mut self.scene).chain(&mut self.named).any(SavedFile::is_saved)
     }

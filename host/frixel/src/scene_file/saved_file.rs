@@ -2,11 +2,11 @@
 
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
-/// Time between two checks of the file. A change must be the same in two consecutive checks, so that a file is not read
+/// Time between two checks of a file. A change must be the same in two consecutive checks, so that a file is not read
 /// while it is being written.
-const CHECK_PERIOD: Duration = Duration::from_millis(100);
+pub(crate) const CHECK_PERIOD: Duration = Duration::from_millis(100);
 
 /// Checks after which a file that is not there counts as gone: half a second, longer than an editor takes to replace
 /// it.
@@ -16,7 +16,6 @@ const CHECKS_GONE: u32 = 5;
 #[derive(Clone)]
 pub(super) struct SavedFile {
     path: PathBuf,
-    checked_at: Instant,
     /// State of the file before it was read.
     read: Option<Fingerprint>,
     /// State of the file at the last check.
@@ -54,7 +53,7 @@ impl SavedFile {
     /// Watches a file for changes from now on. Call this before the file is read.
     pub(super) fn new(path: &Path) -> Self {
         let now = Fingerprint::of(path);
-        Self { path: path.to_owned(), checked_at: Instant::now(), read: now, checked: now, missed: 0 }
+        Self { path: path.to_owned(), read: now, checked: now, missed: 0 }
     }
 
     /// The path of the file.
@@ -70,17 +69,9 @@ impl SavedFile {
         has_vanished
     }
 
-    /// Whether the file has changed since it was read. Returns false between two checks, and while the file does not
-    /// exist.
+    /// Checks the file, once every [`CHECK_PERIOD`]. Returns whether it has changed since it was read; false while it
+    /// changes, and while it does not exist.
     pub(super) fn is_saved(&mut self) -> bool {
-        if self.checked_at.elapsed() < CHECK_PERIOD {
-            return false;
-        }
-        self.checked_at = Instant::now();
-        self.check()
-    }
-
-    fn check(&mut self) -> bool {
         let now = Fingerprint::of(&self.path);
         self.missed = if now.is_some() { 0 } else { self.missed.saturating_add(1) };
         let is_settled = now == std::mem::replace(&mut self.checked, now);
@@ -94,7 +85,7 @@ mod tests {
 
     /// Results of the two checks that confirm a change, and of one more.
     fn checks(file: &mut SavedFile) -> [bool; 3] {
-        [file.check(), file.check(), file.check()]
+        [file.is_saved(), file.is_saved(), file.is_saved()]
     }
 
     #[test]
@@ -130,8 +121,8 @@ mod tests {
         let mut file = SavedFile::new(&path);
         for len in 1..10 {
             fs::write(&path, "x".repeat(len)).unwrap();
-            assert!(!file.check());
+            assert!(!file.is_saved());
         }
-        assert!(file.check());
+        assert!(file.is_saved());
     }
 }

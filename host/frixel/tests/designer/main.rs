@@ -3,19 +3,13 @@
 
 mod control;
 mod demo;
-#[cfg(unix)]
-mod experiments;
 mod first_scene;
 mod numbers;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
-#[cfg(unix)]
-mod ports;
 mod streams;
 mod strokes;
-#[cfg(unix)]
-mod tutorial;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -9,9 +9,8 @@ mod source;
 mod table;
 
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -97,27 +96,5 @@ impl Ran {
     /// Whether the command failed with these words.
     fn refused(&self, words: &str) -> bool {
         self.code == Some(1) && self.notes.contains(words)
-    }
-}
-
-/// `frixel sim`, until it is dropped.
-struct VirtualBoard {
-    process: Child,
-    port: String,
-}
-
-impl VirtualBoard {
-    fn start(folder: &Folder, line: &str) -> Self {
-        let mut process = folder.command(line).stderr(Stdio::null()).spawn().unwrap();
-        let mut port = String::new();
-        BufReader::new(process.stdout.take().unwrap()).read_line(&mut port).unwrap();
-        Self { process, port: port.trim().strip_prefix("port: ").unwrap().to_owned() }
-    }
-}
-
-impl Drop for VirtualBoard {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }

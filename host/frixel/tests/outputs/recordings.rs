@@ -1,71 +1,8 @@
 //! Recordings of people, which take a person's time.
 
-use std::process::Stdio;
-
-use super::{Folder, VirtualBoard};
-use crate::processes::until;
+use super::Folder;
 
 const ROWS: &str = "t_s,x_mm,y_mm\n0.000000,1.0000,2.0000\n0.005000,1.5000,2.0000\n";
-const FINGER: &str = "sim --out board --from 10,20 --to 90,20";
-
-/// Records until `me.csv.partial` has rows, then ends the recorder in this way, and returns what it said.
-fn record_until_rows(folder: &Folder, board: VirtualBoard, kills: bool) -> (VirtualBoard, String) {
-    let line = format!("board record --port {} -o me.csv --overwrite", board.port);
-    let mut child = folder.command(&line).stdout(Stdio::null()).spawn().unwrap();
-    until("rows", || folder.path("me.csv.partial").exists() && folder.text("me.csv.partial").len() > 2_000);
-    let second = folder.run("board record --port nowhere -o me.csv --overwrite");
-    assert!(second.refused("another frixel writes to me.csv: wait for it"), "{}", second.notes);
-    let board = if kills {
-        child.kill().unwrap();
-        board
-    } else {
-        drop(board);
-        VirtualBoard::start(folder, FINGER)
-    };
-    (board, String::from_utf8(child.wait_with_output().unwrap().stderr).unwrap())
-}
-
-#[test]
-fn a_recording_that_ends_early_leaves_its_rows_which_the_next_one_names_and_finishes() {
-    for kills in [true, false] {
-        let folder = Folder::new();
-        let (board, said) = record_until_rows(&folder, VirtualBoard::start(&folder, FINGER), kills);
-        let says = "what was recorded until then is in me.csv.partial: add --finish to keep them";
-        assert!(kills || said.contains(says), "{said}");
-        let rows = folder.text("me.csv.partial");
-        assert!(rows.ends_with('\n') && rows.lines().all(|row| row.split(',').count() == 3), "whole rows");
-        let ran = folder.run(&format!("board record --port {} -o me.csv --seconds 0.3", board.port));
-        let says = "me.csv.partial has the rows of a recording that was cut off: add --finish to keep them, or record \
-                    anew with --overwrite";
-        assert!(ran.refused(says), "{}", ran.notes);
-        // A part of a row, as a process that was killed may leave one.
-        folder.write("me.csv.partial", &(rows.clone() + "9.1234"));
-        let ran = folder.run("board record --finish -o me.csv");
-        assert!(ran.code == Some(0) && ran.said.contains("s of touch"), "{}{}", ran.said, ran.notes);
-        assert_eq!(folder.text("me.csv"), rows);
-        assert!(folder.run("board record --finish -o other.csv").refused("leave --finish out"));
-    }
-}
-
-/// Neither a port that is mistyped nor a screen that nobody touches costs rows, even with leave to replace them.
-#[test]
-fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
-    let folder = Folder::new();
-    folder.write("none.csv", "t_s,x_mm,y_mm\n0,,\n10000,10,20\n10001,20,20\n");
-    let board = VirtualBoard::start(&folder, "sim --out board --stroke none.csv");
-    folder.write("me.csv", ROWS);
-    folder.write("me.csv.partial", ROWS);
-    let ran = folder.run(&format!("board record --port {} -o me.csv", board.port));
-    let says = "me.csv is there already, and a recording is not replaced: give another name to -o, or add --overwrite";
-    assert!(ran.refused(says), "{}", ran.notes);
-    for line in [format!("board record --port {} --seconds 0.3", board.port), "board record --port nowhere".to_owned()]
-    {
-        let ran = folder.run(&format!("{line} -o me.csv --overwrite"));
-        assert_eq!(ran.code, Some(1), "{line}: {}", ran.notes);
-        let kept = ["me.csv", "me.csv.partial"].map(|name| folder.text(name));
-        assert_eq!(kept, [ROWS, ROWS], "{line}");
-    }
-}
 
 /// Another command's rows, the zeros that a crash of the machine leaves, and a header that was cut.
 #[test]

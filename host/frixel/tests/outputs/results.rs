@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 
 use super::table::{OUTPUTS, Output, PLAY};
-use super::{Folder, Ran, VirtualBoard};
+use super::{Folder, Ran};
 
 /// Every output with a command line.
 fn runs() -> impl Iterator<Item = (&'static Output, String)> {
@@ -100,22 +100,6 @@ fn a_file_of_an_interrupted_play_is_noted() {
     assert!(whole.code == Some(0) && !whole.notes.contains("interrupted"), "{}", whole.notes);
     assert!(interrupted.notes.contains("out/felt.csv: of an interrupted play"), "{}", interrupted.notes);
     assert!(!folder.run("replay out/t.parquet").notes.contains("interrupted"));
-}
-
-#[test]
-fn a_folder_has_one_writer_and_no_picture_of_an_earlier_play() {
-    let folder = Folder::new();
-    let board = VirtualBoard::start(&folder, "sim --out out");
-    for line in ["play scene.toml --seconds 0.1 --out ./out", "demo --out out", "sim --out out"] {
-        assert!(folder.run(line).refused("another frixel writes to "), "{line}");
-    }
-    assert_eq!(folder.text("out/felt.csv").matches("t_s,").count(), 1, "one log");
-    drop(board);
-    // A process that was killed holds no folder. A play to a port has another picture than one on the simulator.
-    folder.write("out/commanded.svg", "of an earlier play");
-    let ran = folder.run("play scene.toml --seconds 0.1 --out out");
-    assert_eq!(ran.code, Some(0), "{}", ran.notes);
-    assert!(folder.names().iter().all(|name| !name.contains("frixel-") && name != "out/commanded.svg"));
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 use crate::rigs::RecordedLink;
-use crate::scene_file::{ProfileNames, SceneFiles};
+use crate::scene_file::{CHECK_PERIOD, ProfileNames, SceneFiles};
 use anyhow::Result;
 use frixel_play::{PlayError, Player, Replaced};
 use frixel_scene::Program;
@@ -23,6 +24,8 @@ pub(super) struct LiveScene {
     files: SceneFiles,
     /// Whether saved files are played.
     watches: bool,
+    /// Time of the next check of the files, on the clock of the board's link.
+    check_at: Duration,
     /// The scene that comes next. Meanwhile, the files are not checked: those of the next scene are as they were before
     /// they were read, so that no change is missed.
     next: Option<NextScene>,
@@ -80,7 +83,7 @@ impl LiveScene {
     /// `files` are those of the first scene.
     pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles, outputs: PlayFiles) -> Self {
         let loader = Loader { profiles: args.profiles.names(), target, outputs };
-        Self { loader, files, watches: args.watch, next: None }
+        Self { loader, files, watches: args.watch, check_at: Duration::ZERO, next: None }
     }
 
     /// Plays another scene next, and watches its files once it plays.
@@ -100,7 +103,9 @@ impl LiveScene {
             let compiled = next.compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
             return self.play(next.origin, compiled, player);
         }
-        if self.watches && self.next.is_none() {
+        let now = player.device().now();
+        if self.watches && self.next.is_none() && now >= self.check_at {
+            self.check_at = now + CHECK_PERIOD;
             self.check_files(player);
         }
         Ok(None)
@@ -186,8 +191,6 @@ fn replace<L: RecordedLink>(
 mod tests {
     use std::fs;
     use std::sync::mpsc::{Sender, channel};
-    use std::thread::sleep;
-    use std::time::{Duration, Instant};
 
     use frixel_driver::{Device, PollingLink, ignore_progress};
     use frixel_felt::recorder::Recorder;
@@ -256,19 +259,28 @@ mod tests {
         fn refresh(&mut self) {
             self.live.refresh(&mut self.player).unwrap();
             self.player.step(Duration::from_millis(1)).unwrap();
-            sleep(Duration::from_millis(5));
         }
 
-        /// Refreshes until a scene with this friction plays.
+        /// Lets the compiler end, if it is not held.
+        fn refresh_compiled(&mut self) {
+            while self.live.next.as_ref().is_some_and(|next| !next.compiling.is_finished()) {
+                thread::yield_now();
+            }
+            self.refresh();
+        }
+
+        /// Refreshes for a second at most, until a scene with this friction plays.
         fn until_plays(&mut self, friction_n: f64) {
-            let begin = Instant::now();
             let plays = |player: &Player<PollingLink<RigStream<Rig>>>| {
                 TargetRange::of(player.playing().unwrap().program()).most_n
             };
-            while (plays(&self.player) - friction_n).abs() > 1e-6 {
-                assert!(begin.elapsed() < Duration::from_secs(20), "{friction_n} N never plays");
-                self.refresh();
+            for _ in 0..1_000 {
+                if (plays(&self.player) - friction_n).abs() < 1e-6 {
+                    return;
+                }
+                self.refresh_compiled();
             }
+            panic!("{friction_n} N never plays");
         }
     }
 
@@ -280,8 +292,7 @@ mod tests {
         for (name, text, friction_n) in [("part.toml", part(0.255), 0.255), ("scene.toml", alone(0.26), 0.26)] {
             let compiler = watched.compile_until_sent();
             watched.write(name, &text);
-            let begin = Instant::now();
-            while begin.elapsed() < Duration::from_millis(400) {
+            for _ in 0..400 {
                 watched.refresh();
             }
             compiler.send(()).unwrap();
@@ -295,9 +306,7 @@ mod tests {
         let mut watched = Watched::new(&mut memory);
         let nowhere = watched.folder.path().join("nowhere.toml");
         watched.live.load(&nowhere, &watched.player);
-        while watched.live.next.is_some() {
-            watched.refresh();
-        }
+        watched.refresh_compiled();
         watched.write("part.toml", &part(0.255));
         watched.until_plays(0.255);
 

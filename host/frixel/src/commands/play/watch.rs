@@ -2,17 +2,13 @@
 
 use anyhow::Result;
 use std::thread::sleep;
-use std::time::Duration;
 
-use crate::scene_file::SceneFiles;
+use crate::scene_file::{CHECK_PERIOD, SceneFiles};
 
 use super::outputs::PlayFiles;
 use super::rigs;
 use super::target::Target;
 use super::{Interrupt, PlayArgs, finish, note};
-
-/// Time between two checks of the files.
-const CHECK_PERIOD: Duration = Duration::from_millis(20);
 
 /// Plays the scene, and plays it anew whenever its file, or a file that it names, was saved, until Ctrl-C.
 ///

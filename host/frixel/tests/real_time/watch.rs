@@ -1,7 +1,5 @@
 //! `frixel play --watch` on a virtual board, as processes of their own: a saved file plays, a file with mistakes does
 //! not.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
 use std::fs::{self, File};
@@ -10,7 +8,8 @@ use std::process::Stdio;
 
 use tempfile::TempDir;
 
-use crate::processes::{Running, VirtualBoard, frixel, rows_so_far, until};
+use crate::processes::{HEAD, frixel};
+use crate::{Running, VirtualBoard, rows_so_far, until};
 
 /// A virtual board in an ideal world.
 fn virtual_board(folder: &Path, arguments: &[&str]) -> VirtualBoard {
@@ -36,11 +35,7 @@ fn write_stroke(path: &Path) {
 
 /// The same total friction everywhere, and the longest host timeout that there is: on a busy machine pings are late.
 fn scene(friction: &str) -> String {
-    format!(
-        "version = 1\n[screen]\nwidth_mm = 120\nheight_mm = 80\n[screen.coating]\nthickness_um = 10\npermittivity = 1\n\
-         [drive]\nhost_timeout_ms = 1000\n[finger]\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nfriction_coefficient = 0.5\nnormal_load_n = 0.5\nskin_gap_um = 0\n\
-         [[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n"
-    )
+    format!("{HEAD}[drive]\nhost_timeout_ms = 1000\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n")
 }
 
 /// The column `commanded_n`, a row a millisecond, without a row that is half written.

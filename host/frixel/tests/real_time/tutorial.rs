@@ -9,18 +9,14 @@ use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::Stdio;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use super::{command, scenes};
-use crate::processes::{Running, VirtualBoard};
+use crate::processes::{frixel, repository, run, said};
+use crate::{Running, VirtualBoard, until};
 
 /// The port in the page.
 const PORT: &str = "/dev/pts/3";
-/// Longest wait for what a command prints that goes on.
-const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A reader of the page, in a folder of its own.
 struct Reader {
@@ -54,7 +50,8 @@ impl Reader {
         }
         let port = self.board.as_ref().map_or(PORT, |board| &board.port);
         let arguments: Vec<&str> = line.split_whitespace().map(|word| if word == PORT { port } else { word }).collect();
-        let mut process = command(self.path(), &arguments);
+        let mut process = frixel();
+        process.args(&arguments).current_dir(self.path());
         if let Some(file) = input {
             process.stdin(File::open(self.path().join(file)).unwrap());
         }
@@ -68,7 +65,7 @@ impl Reader {
             self.watching = Some(Running(process.spawn().unwrap()));
             // The first scene plays when rows of telemetry are there.
             let rows = self.path().join("frixel-out/.felt.csv.frixel-tmp");
-            wait("the scene plays", || fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2));
+            until("the scene plays", || fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2));
             return;
         }
         let output = process.output().unwrap();
@@ -103,7 +100,7 @@ impl Reader {
             let part = line.trim().trim_end_matches("...");
             if self.watching.is_some() {
                 let said = || fs::read_to_string(self.path().join("said")).unwrap();
-                wait(part, || said().contains(part));
+                until(part, || said().contains(part));
             } else {
                 assert!(self.printed.contains(part), "{part}: {}", self.printed);
             }
@@ -126,27 +123,19 @@ impl Reader {
     }
 }
 
-fn wait(what: &str, mut done: impl FnMut() -> bool) {
-    let begin = Instant::now();
-    while !done() {
-        assert!(begin.elapsed() < PATIENCE, "hung: {what}");
-        sleep(Duration::from_millis(20));
-    }
-}
-
 /// The last scene has all of the others, and a board plays it: what it says is no draft.
 fn expect_playable(folder: &Path) {
-    let checked = command(folder, &["check", "all.toml"]).output().unwrap();
-    let said = String::from_utf8(checked.stdout).unwrap() + &String::from_utf8(checked.stderr).unwrap();
+    let checked = run(folder, &["check", "all.toml"]);
+    let said = String::from_utf8_lossy(&checked.stdout).into_owned() + &said(&checked);
     assert!(checked.status.success(), "a board refuses all.toml: {said}");
     assert!(said.contains("\"notification\"") && said.contains("\"picture\""), "{said}");
 }
 
 #[test]
 fn every_command_of_the_tutorial_runs() {
-    let page = File::open(scenes().join("../docs/design/tutorial.md")).unwrap();
+    let page = File::open(repository().join("docs/design/tutorial.md")).unwrap();
     let folder = TempDir::new().unwrap();
-    fs::copy(scenes().join("textures/wood.jpg"), folder.path().join("wood.jpg")).unwrap();
+    fs::copy(repository().join("scenes/textures/wood.jpg"), folder.path().join("wood.jpg")).unwrap();
     let mut reader = Reader { folder, board: None, watching: None, printed: String::new(), commands: 0, edits: 0 };
     let mut lines = BufReader::new(page).lines().map(Result::unwrap);
     let mut paragraph = String::new();

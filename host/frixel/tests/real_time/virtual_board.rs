@@ -1,8 +1,6 @@
 //! `frixel sim` and `frixel play` as two processes on a pseudo-terminal, and what happens when the board is killed.
 //!
 //! Times are the simulator's own, from the log that it keeps; nothing here is measured by the wall clock.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +9,8 @@ use std::process::{Child, Command, Output, Stdio};
 use hound::{SampleFormat, WavSpec, WavWriter};
 use tempfile::TempDir;
 
-use crate::processes::{VirtualBoard, frixel, rows_so_far, until};
+use crate::processes::frixel;
+use crate::{VirtualBoard, rows_so_far, until};
 
 /// The brick in a folder, with the longest host timeout that there is: on a busy machine pings are late.
 fn scene(folder: &Path) -> PathBuf {

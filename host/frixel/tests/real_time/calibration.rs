@@ -1,4 +1,4 @@
-//! `frixel finger calibrate` on the port of a virtual board, whose pace is that of the wall clock.
+//! `frixel finger calibrate` on the port of a virtual board.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -12,9 +12,8 @@ use frixel_scene::{FingerProfile, Profile};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::ports::{TRIES_MAX, was_too_late};
-use super::{command, frixel, succeed};
-use crate::processes::VirtualBoard;
+use crate::VirtualBoard;
+use crate::processes::{frixel, run, said, succeed};
 
 /// Strokes at a speed at which friction follows the drive.
 const STROKES: [&str; 7] = ["--from", "25,40", "--to", "95,40", "--speed", "44", "--minimum-jerk"];
@@ -24,24 +23,20 @@ const FEW: [&str; 2] = ["--strokes", "9"];
 /// A minute of naps of 50 ms: whatever is waited for longer has hung.
 const NAPS_MAX: u32 = 1_200;
 
-/// Calibrates until the machine lets the recording be whole: on a busy one, samples of the drive come too late, and the
-/// virtual board's time falls behind that of the client.
+/// Calibrates, and returns what the command prints.
 fn calibrate(folder: &Path, arguments: &[&str], run: fn(&Path, &[&str]) -> Output) {
-    let said = (0..TRIES_MAX).find_map(|_| {
-        let output =
-            run(folder, &[&["finger", "calibrate", "-o", "data.csv", "--overwrite"], &FEW[..], arguments].concat());
-        let notes = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success() || was_too_late(&notes) || notes.contains("the forces last"), "{notes}");
-        (output.status.success() && !notes.contains("ran out of samples")).then_some(output.stdout)
-    });
-    let said = String::from_utf8(said.unwrap()).unwrap();
-    assert!(said.contains("9 strokes") && said.contains("frixel finger fit data.csv -o finger.toml"), "{said}");
+    let output = run(folder, &[&["finger", "calibrate", "-o", "data.csv"], &FEW[..], arguments].concat());
+    let (printed, notes) = (String::from_utf8_lossy(&output.stdout), said(&output));
+    assert!(output.status.success() && !notes.contains("ran out of samples"), "{notes}");
+    let says = "frixel finger fit data.csv -o finger.toml";
+    assert!(printed.contains("9 strokes") && printed.contains(says), "{printed}");
 }
 
 /// Runs a command whose standard input is what the virtual board's sensor measures meanwhile.
 fn with_forces_on_stdin(folder: &Path, arguments: &[&str]) -> Output {
     let mut forces = fs::File::open(folder.join("board/forces.csv")).unwrap();
-    let mut command = command(folder, arguments);
+    let mut command = frixel();
+    command.args(arguments).current_dir(folder);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let writer = thread::spawn(move || {
@@ -63,45 +58,25 @@ fn with_forces_on_stdin(folder: &Path, arguments: &[&str]) -> Output {
 
 /// The fitted number, and its interval.
 fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
-    let (json, _) = succeed(folder, &["finger", "fit", "data.csv", "--json"]);
+    let json = succeed(folder, &["finger", "fit", "data.csv", "--json"]);
     let json: Value = serde_json::from_str(&json).unwrap();
     (json[key].as_f64().unwrap(), [0, 1].map(|end| json[interval][end].as_f64().unwrap()))
-}
-
-/// A person whose finger slides over a virtual board, calibrated with the forces of a sensor under the screen.
-fn calibrated_at_a_port() -> TempDir {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
-    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"], frixel);
-    folder
 }
 
 /// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs.
 #[test]
 fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
-    let folder = calibrated_at_a_port();
+    let folder = TempDir::new().unwrap();
+    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
+    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"], run);
     let drawn = Person::drawn(5).finger.friction_coefficient;
     let (coefficient, [low, high]) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
     assert!((coefficient / drawn - 1.0).abs() < 0.05, "{coefficient}, not {drawn}");
     assert!(low < coefficient && coefficient < high, "{coefficient} is outside of {low} to {high}");
 }
 
-/// The board runs in real time, so that every recording has other noise, and one interval in twenty misses the truth.
-/// `--test main fit` counts the misses in virtual time.
-#[test]
-#[ignore = "one interval in twenty misses: cargo xtask soak experiments"]
-fn the_electric_friction_of_a_person_at_a_port_is_in_its_interval() {
-    let folder = calibrated_at_a_port();
-    let contact = Person::drawn(5).contact(1e-6 / 3.9).unwrap();
-    let (_, interval_n) = fitted(folder.path(), "electric_friction_150_v_n", "electric_friction_150_v_interval_n");
-    // Less what amplifier and skin take of a square wave of 1 kHz, and with eight strokes of noise.
-    let [low, high] = interval_n.map(|newtons| newtons / contact.electric_friction_n(150.0));
-    assert!(low < 1.05 && 0.80 < high && high - low < 0.5, "{low} to {high}");
-}
-
 /// The same, while the sensor's rows come on standard input.
 #[test]
-#[ignore = "a minute of real time on an idle machine: cargo xtask soak experiments"]
 fn forces_are_read_from_standard_input_while_the_board_plays() {
     let folder = TempDir::new().unwrap();
     let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());

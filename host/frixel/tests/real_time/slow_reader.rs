@@ -1,6 +1,4 @@
 //! A virtual board on a pseudo-terminal, and a client that does not read.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
