@@ -1,4 +1,4 @@
-//! Writes what a target starts from into a folder: `seeds TARGET FOLDER`.
+//! Writes the seed corpus of a target into a folder: `seeds TARGET FOLDER`.
 
 use std::error::Error;
 use std::fs;

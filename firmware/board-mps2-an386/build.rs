@@ -1,4 +1,4 @@
-//! Puts the linker script where the linker looks for it, and says which board the target stands for.
+//! Copies the linker script to the linker's search path, and sets the `cfg` of the target's board.
 
 use std::env;
 use std::error::Error;
@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-cfg=an505");
     }
     fs::copy(if is_an505 { "an505.x" } else { "an386.x" }, out.join("memory.x"))?;
-    // cortex-m-rt wants names of interrupt handlers that may be left out; there are none.
+    // cortex-m-rt requires a file with the names of optional interrupt handlers; there are none.
     fs::write(out.join("device.x"), "")?;
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-bins=-Tlink.x");

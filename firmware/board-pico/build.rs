@@ -1,11 +1,11 @@
-//! Puts the linker script where the linker looks for it: the memories of the chip, and what lies where in them.
+//! Copies the linker script, which defines the chip's memory layout, to the linker's search path.
 
 use std::env;
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-/// Feature of a chip, as Cargo hands it on, its linker script and its target.
+/// Each chip's Cargo feature, as Cargo passes it in the environment, its linker script and its target.
 const CHIPS: [(&str, &str, &str); 2] = [
     ("CARGO_FEATURE_RP2040", "rp2040.x", "thumbv6m-none-eabi"),
     ("CARGO_FEATURE_RP2350", "rp2350.x", "thumbv8m.main-none-eabihf"),

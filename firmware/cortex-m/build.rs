@@ -1,4 +1,4 @@
-//! Says which architecture the processor has, as `cortex-m` does for itself.
+//! Sets the `cfg` of the processor's architecture, like the build script of `cortex-m`.
 
 use std::env;
 

@@ -1,4 +1,4 @@
-//! What a fuzzer feeds with arbitrary bytes: a function for each target, which panics where it finds a mistake.
+//! Fuzz targets: each function takes arbitrary bytes, and panics if it finds a bug.
 #![forbid(unsafe_code)]
 #![allow(
     clippy::expect_used,
@@ -25,7 +25,7 @@ use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
 
-/// The files of the scenes that a fuzzer starts from: those of the gallery, and one whose finger is an empirical law.
+/// Scene files of the seed corpus: those of the gallery, and one whose finger has an empirical law.
 pub fn scene_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let gallery =
@@ -47,7 +47,7 @@ impl Files for GalleryFiles {
     }
 }
 
-/// Those of the same scenes that have no pictures, compiled, each with the name of its file.
+/// The scenes of [`scene_files`] without pictures, compiled, each with the name of its file.
 pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
     let board = RigConfig::default().board;
     let programs = scene_files().into_iter().map(|file| {
@@ -71,17 +71,17 @@ pub fn scene_text(text: &str) {
         program.worst_tick(rig.board.limits.core).cycles(rig.board.limits.core) <= rig.board.limits.tick_cycles_max
     );
     if let Err(error) = board_costs(&program, &rig) {
-        panic!("it compiles, and the board does not take it: {error}");
+        panic!("it compiles, but the board refuses it: {error}");
     }
 }
 
-/// Text of a plan to start from.
+/// A plan for the seed corpus.
 pub const PLAN: &str = "scenes = [\"flat.toml\"]\npeople = 2\ntouch = [\"100\", \"500\"]\n[parameters]\n\
     \"layer.1.friction_fraction\" = { from = 0.1, to = 0.3, count = 3 }\n\"drive.voltage_max_v_rms\" = [100, 150]\n";
-/// Most people and parameters of a plan whose cells are made.
+/// Largest number of people and of parameters for which the cells of a plan are generated.
 const COMBINED_MAX: usize = 3;
 
-/// A recording to start from, the bytes of its file.
+/// The bytes of a recording's file, for the seed corpus.
 pub fn recording_file() -> Vec<u8> {
     let row = |number: u32| FeltRow {
         t_s: f64::from(number),
@@ -94,8 +94,8 @@ pub fn recording_file() -> Vec<u8> {
     bytes
 }
 
-/// Reads arbitrary bytes as a recording's file, with the hash that they have so that damage is read at all. They are
-/// rejected, or what was read is written and read again.
+/// Reads arbitrary bytes as a recording's file, with a matching hash, so that the damage itself is parsed. They are
+/// rejected, or the result can be written and read again.
 pub fn parquet(bytes: &[u8]) {
     let Ok(recording) = Recording::read_parquet(sealed(bytes.to_vec())) else { return };
     let mut written = Vec::new();
@@ -104,7 +104,7 @@ pub fn parquet(bytes: &[u8]) {
     assert_eq!(recording.first_difference(&again), None);
 }
 
-/// The bytes with their SHA-256 where the hash of a recording stands.
+/// The bytes with the hash of a recording replaced by their own SHA-256.
 fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let head = b"frixel.sha256\x18\x40";
     let Some(at) = bytes.windows(head.len()).rposition(|part| part == head).map(|at| at + head.len()) else {
@@ -118,14 +118,14 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Reads arbitrary text as a scenario. It is rejected, or it has no more than is read.
+/// Reads arbitrary text as a scenario. It is rejected, or has a scene and at most 1,000 commands and faults.
 pub fn scenario(text: &str) {
     let Ok(scenario) = Scenario::parse(text, "fuzz.toml") else { return };
     assert!(scenario.commands.len() + scenario.faults.len() <= 1_000);
     assert!(scenario.scenes().count() >= 1);
 }
 
-/// Reads arbitrary text as the plan of a sweep, and makes the cells of one with few combinations.
+/// Reads arbitrary text as the plan of a sweep, and generates the cells of a plan with few combinations.
 pub fn plan(text: &str) {
     let Ok(plan) = Plan::parse(text, "fuzz.toml") else { return };
     let lists = plan.parameters.len().max(plan.scenes.len()).max(plan.screens.len()).max(plan.touch.len());

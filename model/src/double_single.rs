@@ -13,7 +13,6 @@ use crate::Real;
 /// while the second part, 1e-14 of the number, is a normal `f32`; below about 1e-24 they grow to those of `f32`.
 /// Factors are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error
 /// bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
-/// error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DoubleSingle {
     high: f32,

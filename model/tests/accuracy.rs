@@ -114,7 +114,7 @@ fn zero_state<T: Real>(_: ContactState<T>) -> ContactState<T> {
     ContactState { contact_radius_m: zero, stiffness_pa_per_m: zero, friction_n: zero, electric_friction_n: zero }
 }
 
-/// The rows that the issue names are among the fixtures, and none of them only in f64.
+/// The required rows are among the fixtures, none of them only in f64.
 #[test]
 fn named_rows_are_there() {
     for name in [

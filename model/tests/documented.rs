@@ -11,7 +11,7 @@ fn docs() -> String {
     lines.map(str::trim).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether `found` is `written` when it is rounded to the digits that are there.
+/// Asserts that `found` is `written` when rounded to the same number of digits.
 #[track_caller]
 fn rounds_to(found: f64, written: &str) {
     let digits = written.replace(',', "");

@@ -1,4 +1,4 @@
-//! Tables of empirical laws against the laws, and what is no law.
+//! Tables of empirical laws against the laws, and invalid laws.
 #![allow(clippy::unwrap_used)]
 
 use frixel_model::{EmpiricalLaw, InverseTable, LawError, LawPoint};

@@ -266,8 +266,8 @@ fn limits_of_small_and_large_voltage() {
     assert!((slope(&soft.under_load(0.0).unwrap(), 1e-12) - 1.0).abs() < 1e-4);
 }
 
-/// At the ends of f32 each answer of the lower bound stands for itself: where friction is too small for it, the
-/// stiffness is not, and where friction in its scale is, friction is not.
+/// At the ends of f32, each result of the lower bound is computed independently: the stiffness stays representable
+/// where friction is not, and friction where its scaled value is not.
 #[test]
 fn the_soft_lower_bound_keeps_what_f32_can_hold() {
     let (soft, hard) = (131_072.0, 2_147_483_648.0);

@@ -103,7 +103,8 @@ fn pull_off_load_n<T: Real>(row: &Row) -> Option<T> {
     contact(row).pull_off_load_n(T::from_f64(row.number("voltage_v")?)).ok()
 }
 
-/// From the radius that the reference has for a load: the load, with the share of the spring's force in it.
+/// The load from the reference's contact radius. The error bound grows with the ratio of the spring's force to the
+/// load.
 #[test]
 fn load_from_a_measured_contact() {
     fn load_n<T: Real>(row: &Row) -> Option<T> {

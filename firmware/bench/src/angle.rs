@@ -1,4 +1,4 @@
-//! The angle of a place, beside that of `libm`.
+//! Cost of the angle of a place, compared with `libm`.
 
 use core::hint::black_box;
 
@@ -6,11 +6,11 @@ use frixel_layers::angle_turns;
 
 use crate::count::Counter;
 
-/// Places of a grid around the middle, m.
+/// Half the side of the grid of places around the middle, in steps, and the length of a step, m.
 const SIDE: i32 = 40;
 const STEP_M: f32 = 1.3e-3;
 
-/// Counts both.
+/// Counts both implementations.
 pub fn run(counter: &mut Counter) {
     let mut fast = counter.case("angle");
     let mut libm = counter.case("angle_libm");

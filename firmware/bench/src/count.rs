@@ -8,8 +8,8 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_semihosting::hprintln;
 
-/// Counts of `SysTick`, and the instructions that take as many. An instruction takes 1,024 ns: 25.6 counts at the 25
-/// MHz of an MPS2 board with AN385 or AN386, and 20.48 at the 20 MHz of one with AN505.
+/// Equal durations in counts of `SysTick` and in instructions. An instruction takes 1,024 ns: 25.6 counts at the 25 MHz
+/// of an MPS2 board with AN385 or AN386, and 20.48 at the 20 MHz of one with AN505.
 const COUNTS: u32 = if cfg!(an505) { 512 } else { 128 };
 const INSTRUCTIONS: u32 = if cfg!(an505) { 25 } else { 5 };
 /// `SysTick` is 24 bits wide.
@@ -121,8 +121,8 @@ extern "C" fn nothing() {
     naked_asm!("push {{r7, lr}}", "mov r7, sp", "movs r0, #0", "movs r1, #0", "pop {{r7, pc}}")
 }
 
-/// Number of instructions of a call, including those that read the timer. All calls go through this one function, so
-/// that its own instructions are the same for all.
+/// Number of instructions of a call, including the reads of the timer. All calls go through this one function, so its
+/// own overhead is constant.
 #[inline(never)]
 fn count<S, T, R>(function: fn(&mut S, T) -> R, state: &mut S, input: T, followed: Option<usize>) -> (u32, R) {
     if let Some(case) = followed {

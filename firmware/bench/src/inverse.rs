@@ -24,7 +24,7 @@ const FIXED_ROWS: usize = 512;
 /// Every `CODE_STEP`-th code is looked up.
 const CODE_STEP: usize = 0x2_0003;
 
-/// Counts all of them, without and with a load.
+/// Counts the look-ups of all three methods, without and with a load.
 pub fn run(counter: &mut Counter) {
     let mut by_table = counter.case("inverse_table");
     let mut by_fixed_table = counter.case("inverse_table_fixed");

@@ -35,13 +35,13 @@ const CONSTANT: Layer = Layer::Constant(Constant { electric_friction_n: 0.001 })
 /// More friction than the drive can give; every tick counts as saturated.
 const OUT_OF_REACH: Layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
 
-/// One of many regions that the finger never touches, most of them in a grid cell of their own.
+/// A region that the finger never touches. Most of these are alone in their grid cell.
 fn away(number: usize) -> Region {
     let (column, row) = ((number % 16) as f32, (number / 16) as f32);
     Region::Rectangle { x_m: 0.001 + 0.0075 * column, y_m: 0.063 + 0.006_875 * row, width_m: 5e-3, height_m: 4e-3 }
 }
 
-/// The most layers that a scene has, each in a region of its own, and the most points, in polygons.
+/// A scene with the largest number of layers, each in its own region, and of points, in polygons.
 pub(crate) fn largest_scene() -> SceneBytes {
     let points: [Point; POINTS_MAX] = array::from_fn(|number| {
         let turns = number as f32 / POLYGON_POINTS_MAX as f32;

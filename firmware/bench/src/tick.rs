@@ -48,8 +48,8 @@ pub(crate) struct Bench {
     /// A bit for each kind of layer whose cost was counted, by the kind's number.
     pub(crate) kinds_counted: u32,
     monitor: IdealMonitor,
-    /// One reading of the monitor in four is wrong while the amplifier is enabled: as many as three right ones make up
-    /// for. The supervisor then looks at each of them, as it does while the amplifier switches.
+    /// Whether one monitor reading in four is wrong while the amplifier is enabled: the largest share that the correct
+    /// ones compensate. The supervisor then counts every tick, as it does while the amplifier switches.
     pub(crate) disturbs_monitor: bool,
     is_enabled: bool,
 }

@@ -1,5 +1,5 @@
-//! The parts of this board. [`crate::output`] and [`crate::inputs`] stand for DAC, amplifier and arm switch, as the
-//! simulator sees them; these are the parts that the emulated board lacks.
+//! The parts of this board. [`crate::output`] and [`crate::inputs`] simulate DAC, amplifier and arm switch; this module
+//! has placeholders for the parts that the emulated board lacks.
 
 use frixel_board::hardware::{Dac, Hardware, Watchdog};
 use frixel_drivers::pin::{DirectPin, SetLevel};
@@ -15,8 +15,8 @@ pub enum Mps2 {}
 
 impl Hardware for Mps2 {
     const TICK_HZ: u32 = BOARD.tick_hz;
-    /// A single reading counts: the simulated contact does not bounce, and a host may arm at any tick, because the person
-    /// is always ready.
+    /// So low that a single reading covers the debounce time. The simulated contact does not bounce, and a host may arm
+    /// at any tick, because the simulated person is always ready.
     const SWITCH_HZ: u32 = 50;
 
     type Period = Period;
@@ -51,7 +51,7 @@ impl SetLevel for NoLight {
     fn set(&self, _: bool) {}
 }
 
-/// There is no watchdog: an emulator that hangs is ended by its simulator.
+/// Placeholder for the watchdog: the simulator ends an emulator that hangs.
 pub struct NoWatchdog;
 
 impl Watchdog for NoWatchdog {

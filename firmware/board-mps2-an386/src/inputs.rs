@@ -40,7 +40,7 @@ impl ReadLevel for Ready {
     }
 }
 
-/// There is no amplifier: its monitor follows the driven voltage as the board's amplifier is specified to.
+/// Simulated monitor. It follows the driven voltage as the board's amplifier is specified to.
 pub struct Monitor {
     ideal: IdealMonitor,
     /// Ticks since the amplifier was disabled.

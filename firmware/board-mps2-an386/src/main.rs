@@ -5,8 +5,8 @@
 //! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`]
 //! causes faults on demand.
 //!
-//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep:
-//! timer, serial port and memory are others there.
+//! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep; its
+//! timer, serial port and memory differ.
 #![no_std]
 #![no_main]
 
@@ -41,7 +41,7 @@ use output::{Enable, Frames};
 use period::Period;
 use uart::Uart;
 
-/// Whether the machine is the one of timer, serial port and stack guard.
+/// Whether the machine has the timer, the serial port and the stack guard.
 const IS_AN386: bool = cfg!(not(an505));
 
 #[entry]

@@ -1,5 +1,5 @@
-//! DAC and amplifier: what a tick puts out is one word of the shared memory, which the simulator takes as the drive of
-//! the whole tick.
+//! DAC and amplifier: the output of a tick is one word of the shared memory. The simulator reads it as the drive of the
+//! whole tick.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

@@ -14,7 +14,7 @@ const PERIOD_COUNTS: u32 = CLOCK_HZ / BOARD.tick_hz;
 /// `SysTick`, as the tick uses it. The simulator takes a drive whenever it comes, so the deadline is the period.
 #[derive(Default)]
 pub struct Period {
-    /// Of the interrupt, before the tick.
+    /// The wait of the interrupt, before the tick.
     pub host_wait: HostWait,
 }
 
@@ -27,7 +27,7 @@ impl hardware::Period for Period {
         PERIOD_COUNTS - 1 - SYST::get_current()
     }
 
-    /// Entry to the handler has acknowledged its own interrupt.
+    /// Whether the next period has begun. The processor acknowledges the interrupt on entry to the handler.
     #[inline]
     fn has_begun(&mut self) -> bool {
         SCB::is_pendst_pending()
@@ -43,19 +43,19 @@ pub fn start(mut systick: SYST) {
     systick.enable_counter();
 }
 
-/// Stops the board's clock while a host is connected and has not answered for its slice of time: a busy machine would
-/// otherwise let the board run on while it does not let the host run at all.
+/// Stops the board's clock while a connected host has not answered for its time slice. On a busy machine, the board
+/// would otherwise run ahead of a host that gets no processor time.
 #[derive(Default)]
 pub struct HostWait {
     /// [`layout::HOST_ANSWERED_TO`] as it was last read.
     answered_to: u32,
-    /// Tick periods that the clock has stood still there.
+    /// Tick periods for which the clock has stood still at that tick.
     waited: u32,
 }
 
 impl HostWait {
-    /// Tick periods after which the board no longer waits, 10 s: the host has hung, or was killed, and its host timeout
-    /// has to act. Virtual time is never ahead of wall time.
+    /// Longest wait in tick periods, 10 s. A host that takes longer has hung or was killed, and the host timeout must
+    /// act. Virtual time is never ahead of wall time.
     const MAX: u32 = 10 * BOARD.tick_hz;
 
     /// Whether the clock stands still in this tick period.

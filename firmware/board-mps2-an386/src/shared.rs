@@ -56,7 +56,7 @@ impl Cursor {
     }
 }
 
-/// Puts out a drive: the values of the DAC and of the amplifier's enable.
+/// Outputs a drive: the values of the DAC and of the amplifier's enable.
 #[inline]
 pub fn drive(tick: u32, drive: Drive) {
     let word = word_of(drive);

@@ -14,7 +14,7 @@ static TICK: TickOwner<Mps2> = TickOwner::new();
 /// What the tick shares with the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
-/// Gives the tick to its interrupt, and starts that.
+/// Gives the tick to its interrupt, and enables the interrupt.
 pub fn start(boot: Boot, tick: Tick<Mps2>, systick: SYST) {
     TICK.give(boot, tick);
     period::start(systick);

@@ -80,8 +80,9 @@ impl Queues {
 }
 
 impl Uart {
-    /// Enables the port; `None` if it is enabled already. `SysTick` should run already: on an idle emulator without a timer the first byte takes a
-    /// second.
+    /// Enables the port; `None` if it is already enabled.
+    ///
+    /// Start `SysTick` first: on an idle emulator without a timer, the first byte takes a second.
     pub fn start(queues: &'static mut Queues, nvic: &mut NVIC) -> Option<Self> {
         let (receiver, received) = queues.receive.split();
         let (to_transmit, transmitter) = queues.transmit.split();

@@ -1,5 +1,4 @@
-//! Identity and limits of this board. The limits stand in `Board::NUCLEO_G474RE`, where the host finds them,
-//! too.
+//! Identity and limits of this board. The limits are defined in `Board::NUCLEO_G474RE`, which the host also uses.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;
@@ -43,8 +42,8 @@ pub const TICK_HZ: u32 = 40_000;
 pub const LIMITS: BoardLimits =
     BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..limits_behind(option_env!("FRIXEL_SERIES_KOHM")) };
 
-/// The limits behind a series resistance in kOhm that the environment of the build names, or else behind the one of
-/// `docs/board/hardware.md`. Firmware and bring-up are built with the same, or the firmware refuses what bring-up has
+/// Limits for the series resistance in the build's environment, kOhm, or else for that of `docs/board/hardware.md`.
+/// Build firmware and bring-up with the same resistance; otherwise the firmware refuses the limits that bring-up has
 /// stored.
 const fn limits_behind(series_kohm: Option<&str>) -> BoardLimits {
     let of_docs = Board::NUCLEO_G474RE.limits;

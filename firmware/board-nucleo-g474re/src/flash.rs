@@ -1,4 +1,4 @@
-//! Bank 2 of the flash, which holds the stored limits. The image runs from bank 1, and operations on bank 2 do not stall it
+//! Bank 2 of the flash, which holds the stored limits. The image runs from bank 1. Operations on bank 2 do not stall it
 //! unless bank 2 is read meanwhile (RM0440, "Embedded flash memory": "Read-while-write", "Flash program and erase
 //! operations").
 

@@ -54,7 +54,7 @@ impl Output {
         output
     }
 
-    /// Lets the DAC put out its codes for another [`LIFE_US`], with the amplifier disabled, whatever was kicked before.
+    /// Enables the DAC's output for another [`LIFE_US`], with the amplifier disabled, regardless of earlier kicks.
     pub fn kick_dac_alone(&mut self) {
         TIM4.ccmr_output(0).modify(|w| w.set_ocm(0, Ocm::FORCE_INACTIVE));
         restart(Ocm::FORCE_INACTIVE);
@@ -82,7 +82,7 @@ impl KickedEnable for Output {
     }
 }
 
-/// Starts the timer anew. If it does not run, amplifier enable has this output mode from now on, and CLEAR is a
+/// Restarts the timer. If it was stopped, this also sets the output mode of the amplifier enable, and makes CLEAR a
 /// one-shot.
 #[inline]
 fn restart(enable: Ocm) {

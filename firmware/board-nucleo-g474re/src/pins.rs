@@ -42,8 +42,7 @@ impl SetLevel for Wire {
     }
 }
 
-/// A pin that becomes an output when it is set, whatever it was connected to before, without a pulse of the other
-/// level.
+/// A pin that becomes an output when it is set, whatever its function was, without a glitch to the other level.
 pub(crate) struct Forced(Wire);
 
 impl SetLevel for Forced {

@@ -27,7 +27,7 @@ pub static SHARED: TickShared = TickShared::new::<Period>();
 #[cfg(feature = "log")]
 defmt::timestamp!("tick {=u32}", count());
 
-/// Gives the tick to its interrupt, and starts that. The tick's deadline is 21.8 us into the period.
+/// Gives the tick to its interrupt, and enables the interrupt. The tick's deadline is 21.8 us into the period.
 #[inline]
 pub fn start<H: Hardware>(owner: &TickOwner<H>, boot: Boot, tick: Tick<H>)
 where

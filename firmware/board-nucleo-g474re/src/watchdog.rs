@@ -7,8 +7,8 @@ use stm32_metapac::{DBGMCU, IWDG};
 
 use crate::{clock, wait_until};
 
-/// Reload value, in counts of 4 clocks of the 32 kHz oscillator: 100 ms. The longest operations of the main loop are
-/// the table of a committed scene, 14 ms as measured on the emulated board (2026-11-20).
+/// Reload value, in counts of 4 clocks of the 32 kHz oscillator: 100 ms. The longest operation of the main loop, the
+/// table of a committed scene, takes 14 ms on the emulated board.
 const RELOAD: u16 = 800;
 
 /// The watchdog.
@@ -42,8 +42,8 @@ impl hardware::Watchdog for Watchdog {
     }
 }
 
-/// Feeds the watchdog whether there are ticks or not, for a program that has not started them. One that runs from the
-/// reset on (option byte `IWDG_SW`) would reset it after half a second. Without effect as long as none runs.
+/// Feeds the watchdog regardless of ticks, for a program that has not started them. A watchdog that runs from reset on
+/// (option byte `IWDG_SW`) would otherwise reset it after half a second. Has no effect while the watchdog is stopped.
 pub fn feed() {
     IWDG.kr().write(|w| w.set_key(Key::RESET));
 }

@@ -1,5 +1,5 @@
-//! Identity and limits of this board. The limits stand in `Board::PICO_2` and `Board::PICO`, where the host
-//! finds them, too.
+//! Identity and limits of this board. The limits are defined in `Board::PICO_2` and `Board::PICO`, which the host also
+//! uses.
 
 use frixel_board::fault::LastReset;
 use frixel_board::hardware::Hardware;

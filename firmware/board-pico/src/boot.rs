@@ -1,4 +1,4 @@
-//! What comes before `main`. The boot ROM reads a few words at the beginning of the flash and starts the image there,
+//! The start before `main`. The boot ROM reads a few words at the beginning of the flash and starts the image there,
 //! with everything else still in the flash; the image then copies its code to RAM, and runs there.
 //!
 //! | | RP2040 | RP2350 |

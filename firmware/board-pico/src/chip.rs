@@ -1,4 +1,4 @@
-//! Numbers in which the two chips differ, and the registers that they name differently.
+//! Constants that differ between the two chips, and registers with different names.
 
 use frixel_drivers::rp2::ResetFlags;
 use rp_pac::WATCHDOG;
@@ -12,11 +12,11 @@ pub use rp2350::*;
 mod rp2350 {
     use frixel_control::Board;
 
-    /// What this board is, until bring-up has stored other limits.
+    /// The board's description, until bring-up has stored other limits.
     pub const BOARD: Board = Board::PICO_2;
     /// Clock of the core, in Hz.
     pub const CORE_HZ: u32 = 150_000_000;
-    /// Of the PLL: 12 MHz * 125 / 5 / 2.
+    /// PLL settings: 12 MHz * 125 / 5 / 2.
     pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 125, divide: [5, 2] };
     /// Interrupts of the chip.
     pub(crate) const INTERRUPTS: usize = 52;
@@ -30,11 +30,11 @@ mod rp2350 {
 mod rp2040 {
     use frixel_control::Board;
 
-    /// What this board is, until bring-up has stored other limits.
+    /// The board's description, until bring-up has stored other limits.
     pub const BOARD: Board = Board::PICO;
     /// Clock of the core, in Hz: the most that the vendor supports, at 1.15 V.
     pub const CORE_HZ: u32 = 200_000_000;
-    /// Of the PLL: 12 MHz * 100 / 6 / 1.
+    /// PLL settings: 12 MHz * 100 / 6 / 1.
     pub(crate) const PLL: crate::clock::PllSettings = crate::clock::PllSettings { multiply: 100, divide: [6, 1] };
     /// Interrupts of the chip.
     pub(crate) const INTERRUPTS: usize = 26;
@@ -47,7 +47,7 @@ mod rp2040 {
 /// Ticks a second.
 pub const TICK_HZ: u32 = BOARD.tick_hz;
 
-/// What the chip says of its last reset.
+/// The chip's flags about its last reset.
 pub(crate) fn reset_flags() -> ResetFlags {
     let reason = WATCHDOG.reason().read();
     let flags = ResetFlags { watchdog_timer: reason.timer(), watchdog_forced: reason.force(), ..ResetFlags::default() };

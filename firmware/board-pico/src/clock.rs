@@ -26,7 +26,7 @@ impl PllSettings {
     }
 }
 
-/// Of the ADC's PLL: 48 MHz, the clock that the ADC asks for (RP2040, 4.9, "ADC and Temperature Sensor").
+/// Settings of the ADC's PLL: 48 MHz, the clock that the ADC requires (RP2040, 4.9, "ADC and Temperature Sensor").
 const PLL_ADC: PllSettings = PllSettings { multiply: 100, divide: [5, 5] };
 
 const _: () = assert!(chip::PLL.hz() == CORE_HZ && PLL_ADC.hz() == 48_000_000);
@@ -57,8 +57,8 @@ pub fn start() {
     start_watchdog_ticks();
 }
 
-/// Enables the peripherals that the board uses, except the pins, in the state after a reset: one that does not reset
-/// the whole chip, such as a debugger's, has left them running.
+/// Enables the peripherals that the board uses, except the pins, in their reset state. A partial reset, such as a
+/// debugger's, leaves them running.
 pub fn start_peripherals() {
     restart(|w, is_reset| {
         w.set_adc(is_reset);
@@ -109,10 +109,10 @@ fn start_pll(pll: Pll, set_reset: fn(&mut Peripherals, bool), settings: &PllSett
     pll.pwr().modify(|w| w.set_postdivpd(false));
 }
 
-/// Gives the reference back to the ring oscillator, and divides it into ticks for the watchdog, which nothing else
-/// uses: so these go on when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators").
-/// Whether the watchdog counts them without the chip's own clock, the data sheets do not say. The boot ROM has run from
-/// the ring oscillator, so it is on.
+/// Runs the watchdog's ticks from the ring oscillator, through the reference, which nothing else uses. They therefore
+/// continue when the crystal stops (RP2040, 4.7.2, "Tick generation"; RP2350, 8.5, "Tick generators"). The data sheets
+/// do not state whether the watchdog counts them without the chip's own clock. The ring oscillator is on, since the
+/// boot ROM runs from it.
 fn start_watchdog_ticks() {
     const CYCLES: u16 = (chip::RING_OSCILLATOR_MAX_HZ / 1_000_000) as u16;
     CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::ROSC_CLKSRC_PH));
@@ -129,7 +129,7 @@ fn start_watchdog_ticks() {
     }
 }
 
-/// Supplies the core with 1.15 V, and slows the flash down to 50 MHz: nothing is run from it, so it need not be fast.
+/// Supplies the core with 1.15 V, and slows the flash down to 50 MHz, since no code runs from it.
 #[cfg(feature = "rp2040")]
 fn prepare_for_speed() {
     const V_1_15: u8 = 0b1100;
@@ -141,11 +141,11 @@ fn prepare_for_speed() {
     rp_pac::SSI.ssienr().write(|w| w.set_ssi_en(true));
 }
 
-/// The core's voltage is right for 150 MHz from reset on, and the boot ROM has set the flash slow.
+/// Does nothing: the core voltage after a reset suffices for 150 MHz, and the boot ROM has slowed the flash down.
 #[cfg(feature = "rp2350")]
 fn prepare_for_speed() {}
 
-/// Which source the core's clock has: one bit each.
+/// The selected source of the core's clock, one bit per source.
 fn selected_sys() -> u32 {
     let selected = CLOCKS.clk_sys_selected().read();
     #[cfg(feature = "rp2350")]
@@ -153,7 +153,7 @@ fn selected_sys() -> u32 {
     selected
 }
 
-/// Which source the reference has: one bit each.
+/// The selected source of the reference, one bit per source.
 fn selected_ref() -> u32 {
     let selected = CLOCKS.clk_ref_selected().read();
     #[cfg(feature = "rp2350")]

@@ -1,12 +1,13 @@
 //! The DAC, an AD5761R behind state machine 0 of PIO 0, which sends a frame of 24 bits at the same instant of every
-//! period for which it was given one ([`crate::period`]), and keeps what the DAC shifts out meanwhile. Without a frame
-//! there are no edges. Two halves take turns ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
+//! period for which it was given one ([`crate::period`]), and stores the bits that the DAC shifts out meanwhile.
+//! Without a frame there are no edges. Two halves take turns
+//! ([`BusHandover`](frixel_drivers::bus_handover::BusHandover)):
 //!
 //! - [`Frames`], in the tick: one output frame a period;
 //! - [`DacBus`], in the main loop: for the driver that configures the DAC and reads it back, a frame a period, too.
 //!
-//! SCLK is high between frames, and the DAC samples at falling edges: mode 2, at 6.25 MHz. SDO is read at the falling
-//! edges, too: it follows the rising edges by up to 40 ns, of the 80 that there are.
+//! SCLK is high between frames, and the DAC samples at falling edges: mode 2, at 6.25 MHz. SDO is also read at the
+//! falling edges, 80 ns after the rising edges, which it follows by up to 40 ns.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -42,8 +43,8 @@ const IDLE: u16 = 0b11;
 const SELECTED: u16 = 0b10;
 const FALLEN: u16 = 0b00;
 
-/// A word for the machine: a one, 24 bits, the most significant first, and seven that do not matter. It takes register
-/// X, zero, where there is no word.
+/// Program of the state machine. A word is a one, 24 bits, the most significant first, and seven unused bits. Without a
+/// word, the machine takes register X, which is zero.
 const PROGRAM: [Instruction; 10] = [
     set(Destination::X, 0).side(IDLE, 2),
     wait_flag(period::FRAME).side(IDLE, 2),
@@ -108,7 +109,7 @@ impl DacFrames for Frames {
 pub struct DacBus(());
 
 impl FrameBus for DacBus {
-    /// Sends one frame in the period that comes, and waits for its end.
+    /// Sends one frame in the next period, and waits for its end.
     fn exchange(&mut self, bytes: &mut [u8]) -> Result<(), BusError> {
         /// Reads of a register, 20 ns or more each: ten periods of the slower board.
         const ROUNDS_MAX: u32 = 50_000;

@@ -6,9 +6,9 @@ use core::ptr;
 use frixel_drivers::rp2::LIMITS_OFFSET;
 use frixel_session::store::Flash;
 
-/// Where the processor sees the flash.
+/// Address at which the flash is mapped.
 const FLASH: u32 = 0x1000_0000;
-/// Bytes that are read from: a page for each copy of the limits.
+/// Number of bytes that are read: one page for each copy of the limits.
 const LEN: u32 = 2 * StoreFlash::PAGE_LEN;
 
 /// The flash behind the image.

@@ -2,12 +2,12 @@
 //! lists the pins and the parts. Numbers and headings behind "RP2040" and "RP2350" refer to the data sheets of the two
 //! chips; where only one is cited, the other says the same.
 //!
-//! The Pico 2 is the board. The RP2040 has no floating-point unit, so that the Pico manages a fifth of the tick rate;
-//! it is there because an emulator runs its image in this repository's CI. One source serves both. The differences are
-//! in [`chip`], [`clock`], [`boot`] and the unique number.
+//! The Pico 2 is the board. The RP2040 has no floating-point unit, so the Pico reaches a fifth of the tick rate. It is
+//! supported because an emulator runs its image in this repository's CI. One source serves both. The differences are in
+//! [`chip`], [`clock`], [`boot`] and the unique number.
 //!
 //! One interrupt, [`tick`], runs above everything. Everything else runs in the main loop, but for the interrupt that
-//! stores received bytes ([`serial`]). The code that knows neither chip is in `firmware/board`.
+//! stores received bytes ([`serial`]). Code that is independent of the chip is in `firmware/board`.
 //!
 //! | part | does what |
 //! |---|---|

@@ -63,7 +63,7 @@ impl I2cPort for Port {
         I2C0.ic_enable().write(|w| w.set_enable(false));
     }
 
-    /// Until then, it takes no configuration (RP2040, 4.3.10, "Disabling").
+    /// Whether the peripheral has stopped; until then, it ignores configuration (RP2040, 4.3.10, "Disabling").
     fn has_stopped(&mut self) -> bool {
         !I2C0.ic_enable_status().read().ic_en()
     }
@@ -90,7 +90,7 @@ impl I2cPort for Port {
     }
 }
 
-/// Its FIFOs.
+/// The FIFOs of I2C 0.
 struct Fifos;
 
 impl I2cFifos for Fifos {

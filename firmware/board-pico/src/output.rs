@@ -47,7 +47,7 @@ const PROGRAM: [Instruction; 7] = [
     set(Destination::Pins, 0),
 ];
 
-/// The two pins, as a kick has them.
+/// The bits of both pins in a kick.
 const BOTH: u32 = 0b11;
 
 /// The one-shot.
@@ -79,7 +79,7 @@ impl Output {
     }
 }
 
-/// Lets the enable follow the one-shot, or be low whatever that does (RP2040, 2.19.6.1, `GPIO0_CTRL`).
+/// Connects the enable to the one-shot, or forces it low (RP2040, 2.19.6.1, `GPIO0_CTRL`).
 #[inline]
 fn override_enable(over: Outover) {
     // The function stays: what `zero_for_good` has disconnected, no kick connects again.
@@ -93,8 +93,8 @@ impl KickedEnable for Output {
         override_enable(Outover::NORMAL);
     }
 
-    /// The enable is low at once, and stays low until the next kick even if the state machine stands still. Both pins
-    /// of the one-shot are low within 1.1 us: a kick without pins and without rounds.
+    /// Pulls the enable low at once, until the next kick, even if the state machine has stopped. Both pins of the
+    /// one-shot are low within 1.1 us, through a kick without pins and without rounds.
     #[inline]
     fn disable(&mut self) {
         override_enable(Outover::LOW);

@@ -26,12 +26,12 @@ const LEAD: u32 = 2;
 /// Cycles from the flag that starts the frame to the end of the period, in which the frame is sent.
 const TAIL: u32 = 1 + TAIL_SPARE + 1 + 32 * TAIL_ROUNDS;
 const TAIL_ROUNDS: u32 = 4;
-/// What is left when the wait is divided by its round of eight cycles.
+/// Cycles that remain when the wait is divided into rounds of eight cycles.
 const TAIL_SPARE: u32 = (PERIOD - LEAD - 2 - 32 * TAIL_ROUNDS) % 8;
 /// Cycles of the wait.
 const WAIT: u32 = PERIOD - LEAD - TAIL;
 
-/// Flag that says that a period has begun; the PIO's interrupt.
+/// Flag set at the start of a period; raises the PIO's interrupt.
 const BEGUN: u16 = 0;
 /// Flag at which the frame starts.
 pub(crate) const FRAME: u16 = 4;

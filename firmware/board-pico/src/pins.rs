@@ -26,7 +26,7 @@ enum Pull {
     Down,
 }
 
-/// Enables the pins. It does not fail, because it is part of what a panic does.
+/// Enables the pins. This must not fail, because a panic calls it, too.
 pub fn start() {
     /// Longest wait; a reset ends within some cycles.
     const ROUNDS_MAX: u32 = 1_000;
@@ -110,8 +110,10 @@ pub(crate) fn output_low(pin: usize) -> Pin {
     DirectPin(Gpio(pin))
 }
 
-/// An input that is pulled down: a disconnected wire reads as low. On the RP2350 the pull-down alone does not bring a pin
-/// down that was high (erratum RP2350-E9): `docs/board/hardware.md` asks for a resistor.
+/// An input that is pulled down: a disconnected wire reads as low.
+///
+/// On the RP2350, the pull-down alone does not bring a pin down that was high (erratum RP2350-E9), so
+/// `docs/board/hardware.md` requires a resistor.
 pub(crate) fn input_pulled_down(pin: usize) -> Pin {
     enable_output(pin, false);
     configure(pin, Function::Sio, Pull::Down, true);
@@ -133,8 +135,8 @@ pub(crate) fn analog(pin: usize) {
     configure(pin, Function::None, Pull::None, false);
 }
 
-/// The pad comes last: on the RP2350 it holds its state until it is told to follow the function (RP2350, 9.7,
-/// "Isolation latches").
+/// The pad comes last: on the RP2350 it holds its state until it is set to follow the function (RP2350, 9.7, "Isolation
+/// latches").
 fn configure(pin: usize, function: Function, pull: Pull, reads: bool) {
     IO_BANK0.gpio(pin).ctrl().write(|w| w.set_funcsel(function as u8));
     PADS_BANK0.gpio(pin).modify(|w| {
@@ -152,7 +154,7 @@ fn set(pin: usize, high: bool) {
     if high { output.value_set().write_value(1 << pin) } else { output.value_clr().write_value(1 << pin) }
 }
 
-/// Lets software drive the pin, or not.
+/// Sets whether software drives the pin.
 fn enable_output(pin: usize, enabled: bool) {
     let output = SIO.gpio_oe(0);
     if enabled { output.value_set().write_value(1 << pin) } else { output.value_clr().write_value(1 << pin) }

@@ -17,7 +17,7 @@ const _: () = assert!(CORE_HZ.is_multiple_of(MACHINE_HZ));
 pub(crate) struct Machine {
     pub(crate) pio: Pio,
     pub(crate) number: usize,
-    /// Where its program is in the PIO's memory, which its jumps know.
+    /// Address of its program in the PIO's memory. The program's jumps contain it.
     pub(crate) address: usize,
 }
 

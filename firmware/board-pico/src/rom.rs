@@ -5,7 +5,7 @@
 use core::mem;
 use core::ptr;
 
-/// A function that takes nothing.
+/// A function without arguments.
 type Plain = unsafe extern "C" fn();
 
 /// The functions.
@@ -30,7 +30,7 @@ impl FlashFunctions {
         }
     }
 
-    /// Does something with the flash while nothing can be read from it.
+    /// Runs `work` while the flash cannot be read.
     pub(crate) fn without_xip<R>(&self, work: impl FnOnce() -> R) -> R {
         // SAFETY: all code and all constants are in RAM, interrupt handlers and their vectors included.
         unsafe {
@@ -64,6 +64,6 @@ fn find(code: [u8; 2]) -> Option<usize> {
 /// # Safety
 /// The address is an even one in the ROM.
 unsafe fn word(address: usize) -> usize {
-    // SAFETY: the caller says so.
+    // SAFETY: guaranteed by the caller.
     usize::from(unsafe { ptr::with_exposed_provenance::<u16>(address).read_volatile() })
 }

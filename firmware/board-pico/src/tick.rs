@@ -19,7 +19,7 @@ use crate::pins::{self, Pin};
 const AMPLIFIER_READY: usize = 10;
 const ARM_SWITCH: usize = 14;
 
-/// Every other interrupt has the priority below that of the tick, 0: the number is in the upper bits of eight.
+/// Priority of every other interrupt, below the tick's priority 0. The number is in the upper bits of eight.
 const BELOW_THE_TICK: u8 = 1 << 6;
 
 frixel_cortex_m::tick_interrupt!(Pico, PIO0_IRQ_0);
@@ -35,7 +35,7 @@ pub fn start_inputs(_: &Boot) -> (Pin, Pin) {
     (pins::input_pulled_down(AMPLIFIER_READY), pins::input_pulled_down(ARM_SWITCH))
 }
 
-/// Gives the tick to its interrupt, and starts that.
+/// Gives the tick to its interrupt, and enables the interrupt.
 pub fn start(nvic: &mut NVIC, boot: Boot, tick: Tick<Pico>) {
     TICK.give(boot, tick);
     period::start_interrupts();

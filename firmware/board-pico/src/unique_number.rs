@@ -1,11 +1,11 @@
-//! A number that no other board has, of 64 bits.
+//! The board's unique number, of 64 bits.
 
-/// Of the flash, because the RP2040 has none (data sheet of the W25Q16JV, "Read Unique ID Number", unread).
+/// The number of the flash, since the RP2040 has none (data sheet of the W25Q16JV, "Read Unique ID Number", unread).
 #[cfg(feature = "rp2040")]
 pub(crate) fn unique_number() -> Option<[u8; 8]> {
     let rom = crate::rom::FlashFunctions::find()?;
     Some(rom.without_xip(|| {
-        /// The command, and four bytes that do not matter.
+        /// The command, and four dummy bytes.
         const COMMAND: [u8; 5] = [0x4b, 0, 0, 0, 0];
         let mut number = [0; 8];
         flash::select(true);
@@ -20,7 +20,7 @@ pub(crate) fn unique_number() -> Option<[u8; 8]> {
     }))
 }
 
-/// Of the chip (RP2350, 13.10, "Predefined OTP Data Locations": CHIPID0).
+/// The number of the chip (RP2350, 13.10, "Predefined OTP Data Locations": CHIPID0).
 #[cfg(feature = "rp2350")]
 #[allow(clippy::unnecessary_wraps, reason = "on the other chip, there may be none")]
 pub(crate) fn unique_number() -> Option<[u8; 8]> {

@@ -7,8 +7,8 @@ use rp_pac::{PSM, WATCHDOG};
 
 use crate::chip::WATCHDOG_COUNTS_PER_TICK;
 
-/// Time in which the main loop and the tick must both have run, if the ring oscillator is as fast as it may be; a slow
-/// one makes it up to seven times as long. No limit of the output depends on this time.
+/// Watchdog timeout with the fastest allowed ring oscillator, us; the slowest one makes it up to seven times as long.
+/// The main loop and the tick must both run within this time. No limit of the output depends on it.
 const LIFE_US: u32 = 500_000;
 
 /// The watchdog.
@@ -48,7 +48,7 @@ pub(crate) fn reset() -> ! {
     }
 }
 
-/// What a reset by the watchdog resets: all, with the PIOs and the pins, but for the oscillators.
+/// Makes a watchdog reset cover everything, including the PIOs and the pins, except the oscillators.
 fn reset_all_but_oscillators() {
     PSM.wdsel().write(|w| {
         w.0 = !0;

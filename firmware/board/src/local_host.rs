@@ -37,7 +37,7 @@ impl fmt::Display for DriveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Refused(refusal) => refusal.fmt(f),
-            Self::State(state) => write!(f, "the board did not do what it was told, and is {state}"),
+            Self::State(state) => write!(f, "the board was not armed or disarmed in time, and is {state}"),
             Self::Fault(fault, detail) => write!(f, "{fault} (detail {detail})"),
             Self::NoReading => f.write_str("the monitor was not read: the main loop is too slow"),
         }

@@ -153,7 +153,6 @@ pub trait I2cPort {
     /// end this one.
     fn begin(&mut self, address: u8, operation: &Operation<'_>);
 
-    /// Continues the transfer, and returns its result once it has ended. All bytes that were read are in the operation
     /// Continues the transfer, and returns its result once it has ended, with all read bytes in the operation.
     fn poll(&mut self, operation: &mut Operation<'_>) -> Poll<Result<(), BusError>>;
 

@@ -1,4 +1,4 @@
-//! The script of bring-up with a board and a person who do what they are told, but for one thing.
+//! The bring-up script with a board and a person that behave correctly except for one defect.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Arguments;
@@ -17,7 +17,7 @@ use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Refusal;
 
 const LIMITS: BoardLimits = BUILT_IN;
-/// What the board may store.
+/// Largest voltage that the board may store, V peak.
 const MAY_STORE_V_PEAK: f32 = 120.0;
 /// All checks, in the order in which a start makes them.
 const CHECKS: [Check; 7] =
@@ -41,7 +41,7 @@ enum Event {
     Stored(BoardLimits),
 }
 
-/// How a script ends that does not return.
+/// The end of a script that does not return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ending {
     Reset,
@@ -49,7 +49,7 @@ enum Ending {
     Waits,
 }
 
-/// What is odd about the inputs.
+/// A defect of the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Odd {
     /// Ready and switch are connected with each other.
@@ -62,15 +62,15 @@ enum Odd {
     Bouncing,
 }
 
-/// A board and a person. The fields of the first half are what a test sets wrong.
+/// A board and a person. Tests set their defects in the first half of the fields.
 struct TestBench {
     limits: BoardLimits,
-    /// The n-th question is answered with this first.
+    /// Number of a question, and its first answer, which is wrong.
     wrong_answer: Option<(u32, &'static str)>,
     wrong_check: Option<Check>,
-    /// The n-th drive gives this.
+    /// Number of a drive, and its wrong result.
     wrong_drive: Option<(u32, Result<Reading, DriveError>)>,
-    /// The n-th call of the bench resets the board.
+    /// Number of the call of the bench that resets the board.
     reset_at_call: Option<u32>,
     odd: Option<Odd>,
     enable_path: EnablePath,
@@ -84,7 +84,7 @@ struct TestBench {
     answers: Vec<String>,
     inputs: Inputs,
     held: bool,
-    /// The last drive has used up the press.
+    /// Whether the last drive has used up the press.
     used_up: bool,
     injected: usize,
     /// The fault that the last reset has stored.
@@ -169,7 +169,7 @@ impl TestBench {
         }
     }
 
-    /// The person does what the board says.
+    /// Follows the board's last instruction, as the person.
     fn act(&mut self) {
         if let Some(ready) = person::ready_after(&self.said) {
             self.inputs.amplifier_ready = ready && self.odd != Some(Odd::NeverReady);
@@ -380,8 +380,8 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
     assert_eq!(bench.events, [Event::Start]);
 }
 
-/// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. Without a reading
-/// of the ohmmeter, the edges still say so.
+/// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. The edges reveal
+/// the wrong resistance even without a reading of the ohmmeter.
 #[test]
 fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at_the_edges() {
     let questions = brought_up().questions;
@@ -451,7 +451,7 @@ fn every_voltage_follows_a_release_and_a_press() {
     }
 }
 
-/// A switch that is not released and an amplifier that is not ready are waited for; wires that touch end the script.
+/// The script waits for a switch that is not released and an amplifier that is not ready. Touching wires end it.
 #[test]
 fn odd_inputs_drive_nothing() {
     for (odd, ends) in [(Odd::Taped, false), (Odd::NeverReady, false), (Odd::Bridged, true)] {
@@ -463,7 +463,7 @@ fn odd_inputs_drive_nothing() {
     }
 }
 
-/// A board works as well while monostable or second pole is bridged: only this step of the script finds that.
+/// A board with a bridged monostable or second pole works normally; only this step of the script finds the bridge.
 #[test]
 fn a_monostable_or_a_second_pole_that_does_not_disable_the_amplifier_stops() {
     for (enable_path, question) in [
@@ -523,7 +523,7 @@ fn a_higher_voltage_follows_only_a_right_monitor() {
     }
 }
 
-/// Amplifier gain and monitor scale that are wrong by the same factor are only seen by the probe.
+/// Only the probe reveals an amplifier gain and a monitor scale that are wrong by the same factor.
 #[test]
 fn a_probe_that_contradicts_drive_or_monitor_stops() {
     let good = brought_up();
@@ -537,8 +537,8 @@ fn a_probe_that_contradicts_drive_or_monitor_stops() {
     }
 }
 
-/// The largest touch current is promised with a margin for an amplifier and a resistor that are not what the firmware
-/// takes them for. Probe and monitor may be read wrongly, but not both by more than 4 % too low.
+/// The touch bound has a margin for deviations of amplifier and resistor from the values assumed by the firmware. Probe
+/// and monitor may be misread, but not both by more than 4 % too low.
 #[test]
 fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typed() {
     const RESISTOR_MIN: f32 = 0.99 / 1.005;
@@ -562,7 +562,7 @@ fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typ
     assert!(accepted > 50, "{accepted}");
 }
 
-/// The clip of an oscilloscope on mains ties the common to earth, and hides an isolator that was left out.
+/// The clip of a mains-powered oscilloscope ties the common to earth, which hides a missing isolator.
 #[test]
 fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after_them() {
     let bench = brought_up();

@@ -7,14 +7,14 @@ use frixel_control::Sense;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Refusal;
 
-/// Ticks from one round of the main loop to the next, as long as a test says nothing else.
+/// Default number of ticks between two rounds of the main loop.
 const ROUND_TICKS: u32 = 4;
 /// The age at which a report of the finger no longer counts, 40 ms: bring-up's host sends one in each round.
 const REPORT_MAX_TICKS: u32 = 1_600;
 /// More than a drive takes: ten seconds.
 const TICKS_MAX: u32 = 400_000;
 
-/// What happens at a tick of a drive.
+/// The changes of the board's inputs at a tick of a drive.
 type World<'w> = &'w dyn Fn(u32, &mut Sense);
 
 struct TestBoard {
@@ -154,7 +154,7 @@ fn nothing_resumes_after_a_fault() {
         assert!(matches!(result, Err(DriveError::Fault(found, _)) if found == fault), "{result:?}");
         let last = board.last_driven_tick.unwrap();
         assert!((AT_TICK - 1..AT_TICK + 40).contains(&last), "{fault}: {last}");
-        // All is well again, and the person presses the switch anew.
+        // The board is healthy again, and the person presses the switch again.
         board.press();
         let result = board.drive(10.0, GOOD);
         assert!(matches!(result, Err(DriveError::Fault(found, _)) if found == fault), "{result:?}");
@@ -162,7 +162,7 @@ fn nothing_resumes_after_a_fault() {
     }
 }
 
-/// A host that hangs takes the output with it: bring-up's host is one, too.
+/// A hanging main loop also stops bring-up's host, so the host timeout ends the drive.
 #[test]
 fn a_main_loop_that_hangs_ends_the_drive() {
     let mut board = TestBoard::new();

@@ -1,4 +1,4 @@
-//! How a start ends after a panic or a fault, and what the next one learns of it.
+//! The end of a start after a panic or a fault, and its report at the next start.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::cell::RefCell;
@@ -25,7 +25,7 @@ enum Step {
 #[derive(Default)]
 struct FakeProcessor(RefCell<Vec<Step>>);
 
-/// The reset, which leaves everything that runs.
+/// The payload of the panic that simulates a reset.
 struct Reset;
 
 impl FakeProcessor {
@@ -54,7 +54,7 @@ fn ended(end: impl FnOnce(&Ending<&'static FakeProcessor>)) -> (Vec<Step>, LastR
     ended_on(Box::leak(Box::default()), end)
 }
 
-/// The same on a processor.
+/// As [`ended`], on a given processor.
 fn ended_on(
     processor: &'static FakeProcessor,
     end: impl FnOnce(&Ending<&'static FakeProcessor>),
@@ -152,7 +152,8 @@ fn a_start_learns_of_a_fault_once() {
     assert_eq!(next_start(&record, ResetCause::Software).fault, None);
 }
 
-/// Nothing is stored when the watchdog bites: the processor says so. A stored fault is nearer to the reason.
+/// A watchdog reset stores no fault, so the processor's reset cause is reported. A stored fault takes precedence, since
+/// it is closer to the reason.
 #[test]
 fn the_watchdog_is_a_fault_of_its_own() {
     let record = FaultRecord::new();

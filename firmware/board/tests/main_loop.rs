@@ -24,7 +24,7 @@ fn is_of_tick(event: &Event) -> bool {
     matches!(event, Event::Sent(_) | Event::Kicked | Event::Disabled)
 }
 
-/// The watchdog is fed for a tick and a turn together: a loop without ticks, and ticks without the loop, let it bite.
+/// Feeding the watchdog takes a new tick and a turn of the main loop: the board is reset if either of them stops.
 #[test]
 fn only_a_new_tick_feeds_the_watchdog() {
     let is_fed = |event: &Event| *event == Event::Fed;
@@ -45,7 +45,7 @@ fn only_a_new_tick_feeds_the_watchdog() {
     assert_eq!(only(&board.wires.take(), is_fed).len(), 100);
 }
 
-/// Configured and read back before arming, read back before play, with no frame and no kick in between.
+/// The DAC is configured and read back before arming, and read back before play, with no frame or kick in between.
 #[test]
 fn the_dac_is_checked_before_the_board_arms_and_before_it_plays() {
     let board = Board::until(|board| board.state() == State::Active);
@@ -127,7 +127,7 @@ fn the_light_shows_the_state() {
     assert!((7..=9).contains(&changes), "eight changes a second: {changes}");
 }
 
-/// A port that fails is a host that is gone: the host timeout ends the drive, and the watchdog is fed all the while.
+/// A failing port means that the host is gone: the host timeout ends the drive, and the watchdog is still fed.
 #[test]
 fn a_serial_port_that_fails_neither_stops_the_loop_nor_keeps_the_output_on() {
     let mut board = Board::playing();

@@ -19,7 +19,7 @@ use crate::support::played::Board;
 
 const TICK_HZ: u32 = BOARD.tick_hz;
 
-/// A bus on which nobody answers.
+/// A bus on which no device answers.
 struct Silent(Rc<Cell<u32>>);
 
 impl ErrorType for Silent {
@@ -41,7 +41,7 @@ impl ReadLevel for Low {
     }
 }
 
-/// A frame without supply is asked again every 0.1 s, in ticks, and the main loop never waits for it.
+/// An unpowered frame is polled again every 0.1 s, in ticks, and the main loop never waits for it.
 #[test]
 fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
     let board = Board::new();
@@ -75,7 +75,7 @@ enum Told {
     GiveUp,
 }
 
-/// A port whose answers a test sets.
+/// A port with scripted answers.
 struct Port {
     told: RefCell<Vec<Told>>,
     /// Rising edges of SCL until SDA is high.
@@ -167,7 +167,7 @@ impl I2cPort for Handle {
     }
 }
 
-/// Runs a transaction on a board that ticks; its result, what the port was told, and the ticks that it took.
+/// Runs a transaction on a ticking board. Returns its result, the calls of the port, and its duration in ticks.
 fn transaction(port: Handle, operations: &mut [Operation<'_>]) -> (Result<(), BusError>, Vec<Told>, u32) {
     let board = Board::new();
     let mut bus = FrameBus::new(port, TickTime { shared: board.shared, tick_hz: TICK_HZ });
@@ -199,7 +199,7 @@ fn what_the_module_never_needs_is_refused_untold() {
     assert_eq!(transaction(port(), &mut [Operation::Write(&[1]), Operation::Write(&[2])]), refused);
 }
 
-/// Six milliseconds, and the bus is released.
+/// The transfer is aborted after 6 ms, and the bus is released.
 #[test]
 fn a_transfer_that_does_not_end_is_given_up_in_time() {
     let port = port();
@@ -233,7 +233,7 @@ fn a_bus_that_is_held_is_cleared_before_the_transfer() {
     assert_eq!(told, [Told::TakeClock, Told::GiveClock]);
 }
 
-/// A peripheral that still waits for the last transfer takes no configuration.
+/// A peripheral that still waits for the end of the last transfer ignores configuration.
 #[test]
 fn a_peripheral_that_does_not_stop_is_not_begun() {
     let port = port();

@@ -10,7 +10,7 @@ use frixel_board::serial::{RING_LEN, SerialPort, Uart};
 use frixel_board::terminal::Terminal;
 use frixel_drivers::ring::InterruptRing;
 
-/// A UART that takes four bytes at a time, and says once that it takes none.
+/// A UART that accepts four bytes at a time, and once reports that it accepts none.
 #[derive(Clone)]
 struct Wire {
     received: &'static InterruptRing<RING_LEN>,

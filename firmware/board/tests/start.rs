@@ -1,4 +1,4 @@
-//! The start of every board: what is assembled in which order, and how a board describes itself.
+//! The start of every board: the order of its assembly, and the board's description of itself.
 
 use frixel_board::fault::LastReset;
 use frixel_board::start::{describe, prepare};
@@ -29,7 +29,7 @@ fn described(flash: Option<&Filled>) -> Description {
     describe(built_in, flash, CeilingPolicy::InForce, &last_reset)
 }
 
-/// The watchdog would bite before the first tick feeds it.
+/// A watchdog that starts earlier would reset the board before the first tick feeds it.
 #[test]
 fn the_tick_starts_before_the_watchdog_and_nothing_is_driven() {
     let board = Board::new();

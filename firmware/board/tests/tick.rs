@@ -1,4 +1,4 @@
-//! The tick of every board: what it sends, when it is late, and what it does with faults that others find.
+//! The tick of every board: its frames, its deadline, and faults found outside the tick.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_wire::fault::{Fault, State};
@@ -7,7 +7,7 @@ use frixel_wire::message::Command;
 use crate::support::hardware::{DEADLINE_CYCLES, Event, PERIOD_CYCLES};
 use crate::support::played::Board;
 
-/// What the tick said in its last run, without the main loop.
+/// The events of the last tick, without those of the main loop.
 fn of_tick(board: &Board) -> Vec<Event> {
     let is_of_tick = |event: &Event| matches!(event, Event::Sent(_) | Event::Kicked | Event::Disabled);
     board.wires.take().into_iter().filter(is_of_tick).collect()
@@ -17,7 +17,7 @@ fn is_zero(event: &Event) -> bool {
     matches!(event, Event::Sent(code) if code.bits() == 0)
 }
 
-/// The fault, its detail, and the number of missed deadlines, as the main loop knows them.
+/// The fault, its detail, and the number of missed deadlines, as reported to the main loop.
 fn fault(board: &Board) -> (Option<(Fault, u32)>, u32) {
     let status = &board.main_loop.status;
     (status.fault, status.counters.missed_deadlines)
@@ -30,8 +30,8 @@ fn a_playing_tick_sends_its_code_and_then_kicks_the_enable() {
     assert!(matches!(of_tick(&board)[..], [Event::Sent(_), Event::Kicked]));
 }
 
-/// The monitor soon follows the code that the DAC has just put out. That an order does not come first either, the rig
-/// of the Pico shows.
+/// The monitor soon follows the code that the DAC has just output. A test on the Pico's rig checks that no order is
+/// applied first either.
 #[test]
 fn a_tick_reads_the_monitor_before_it_counts() {
     let mut board = Board::playing();
@@ -73,7 +73,7 @@ fn a_late_frame_disables_the_amplifier_and_is_one_fault() {
     }
 }
 
-/// The frame went out in time, but the tick ends in the next period: what it kicked is disabled again.
+/// The frame was sent in time, but the tick ends in the next period: the kicked enable is disabled again.
 #[test]
 fn a_tick_that_overruns_disables_the_amplifier_and_is_a_fault() {
     let mut board = Board::playing();
@@ -132,7 +132,7 @@ fn a_fault_that_the_main_loop_finds_stops_the_next_tick() {
     assert!(matches!(&of_tick(&board)[..], [sent, Event::Disabled] if is_zero(sent)));
     board.step();
     assert_eq!((board.state(), fault(&board)), (State::Faulted, (Some((Fault::Dac, 0x12_3456)), 0)));
-    // It is raised once: a host that clears it is not met by it again.
+    // It is raised only once: it does not return after the host clears it.
     board.receive(Command::ClearFault);
     for _ in 0..10 {
         board.step();

@@ -11,7 +11,7 @@ use frixel_control::{Sense, Status};
 use frixel_session::store::{CeilingPolicy, write_limits};
 use frixel_wire::hello::BoardLimits;
 
-/// What the board may store.
+/// Largest voltage that the board may store, V peak.
 const MAY_STORE_V_PEAK: f32 = 50.0;
 const GAIN: f32 = 1.03;
 /// Ticks of a round of the main loop.
@@ -21,7 +21,7 @@ const LATE_TICKS: u32 = 40_000;
 /// More ticks than bring-up takes: two minutes.
 const TICKS_MAX: u32 = 120 * 40_000;
 
-/// What the person does next at the switch, and when.
+/// The person's next action at the switch, and its time.
 #[derive(Clone, Copy)]
 enum Hand {
     Releases { at_tick: u32 },

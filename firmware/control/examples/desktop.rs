@@ -1,5 +1,5 @@
 //! Fills the coefficients of a tick from a finger on a coating and a scene of one layer, and runs the tick on the
-//! desktop, as a firmware does that takes no scene from a host.
+//! desktop, like a firmware that takes no scene from a host.
 //!
 //! `cargo run -p frixel-control --example desktop` runs it, and so does `cargo test`.
 
@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A finger that slides to the right. Friction falls where a track is about to end, so it lasts longer than the example.
+/// A finger that slides to the right. The track lasts longer than the example, since friction falls before its end.
 fn track() -> Track {
     Track {
         contact: 1,

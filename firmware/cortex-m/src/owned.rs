@@ -14,8 +14,8 @@ pub struct Owned<T> {
     value: UnsafeCell<MaybeUninit<T>>,
 }
 
-// SAFETY: the value is written once, before `get` returns it, and from then on only its handler accesses it; so there is
-// never more than one reference to it, and it changes context once, which `Send` allows.
+// SAFETY: the value is written once, before `get` returns it, and from then on only its handler accesses it. So there
+// is never more than one reference to it, and it changes context once, which `Send` allows.
 unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {

@@ -62,7 +62,7 @@ pub unsafe fn move_vectors<const N: usize>(scb: &mut SCB, from: &[u32; N], to: &
         to.store(*from, Ordering::Relaxed);
     }
     asm::dsb();
-    // SAFETY: the table is complete, and aligned, says the caller.
+    // SAFETY: the table is complete and aligned, as the caller guarantees.
     unsafe { scb.vtor.write(to.as_ptr().addr() as u32) };
     asm::dsb();
     asm::isb();

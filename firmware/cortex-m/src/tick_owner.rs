@@ -31,7 +31,7 @@ where
     /// Only the handler of the tick's interrupt calls this or [`Self::with`], once in each run.
     #[inline]
     pub unsafe fn run(&self) {
-        // SAFETY: the handler owns the value, says the caller.
+        // SAFETY: the handler owns the value, as the caller guarantees.
         if let Some(tick) = unsafe { self.0.get() } {
             tick.run();
         }
@@ -43,7 +43,7 @@ where
     /// That of [`Self::run`].
     #[inline]
     pub unsafe fn with(&self, work: impl FnOnce(&mut Tick<H>)) {
-        // SAFETY: the handler owns the value, says the caller.
+        // SAFETY: the handler owns the value, as the caller guarantees.
         if let Some(tick) = unsafe { self.0.get() } {
             work(tick);
         }

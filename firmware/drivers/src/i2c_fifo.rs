@@ -113,7 +113,7 @@ mod tests {
         }
     }
 
-    /// Serves a transfer, while the controller carries out some commands at any time.
+    /// Serves a transfer while the controller carries out commands at this pace.
     fn run(operation: &mut Operation<'_>, pace: &[usize]) -> Controller {
         let (mut controller, mut transfer) = (Controller::default(), FifoTransfer::default());
         for count in pace.iter().cycle().take(1_000) {

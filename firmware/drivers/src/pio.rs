@@ -155,8 +155,7 @@ pub const fn set(to: Destination, value: u16) -> Instruction {
 mod tests {
     use super::*;
 
-    /// Instructions whose words others have published: the programs of the data sheet's examples, and the assembler's
-    /// output that stands beside them.
+    /// Instructions with published encodings: the example programs of the data sheet, with the assembler's output.
     #[test]
     fn words_are_those_of_the_assembler() {
         for (instruction, word) in [

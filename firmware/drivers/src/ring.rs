@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(reader.take(7, LEN), 0..1);
     }
 
-    /// Also over the end of the ring, and into a buffer that is shorter than what has arrived.
+    /// Also across the end of the ring, and into a buffer shorter than the received bytes.
     #[test]
     fn bytes_of_an_interrupt_are_read_in_order() {
         const LEN: usize = 8;

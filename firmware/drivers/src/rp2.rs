@@ -48,7 +48,7 @@ mod tests {
     const NONE: ResetFlags =
         ResetFlags { watchdog_timer: false, watchdog_forced: false, power_on: false, brown_out: false, run_pin: false };
 
-    /// The chip's own flags stay after a reset by the watchdog: that of the watchdog decides.
+    /// The chip's own flags survive a reset by the watchdog, so the watchdog's flag takes precedence.
     #[test]
     fn the_watchdog_decides_before_the_chips_own_flags() {
         let power_on = ResetFlags { power_on: true, ..NONE };

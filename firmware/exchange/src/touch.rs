@@ -31,7 +31,7 @@ impl StampedTouch {
         take_touch(kind, &mut take).map(|touch| Self { tick, touch })
     }
 
-    /// The report as it arrives at `now_tick`: older by what it came late.
+    /// The report as it arrives at `now_tick`, with its delay added to its age.
     pub fn at(&self, now_tick: u32) -> Touch {
         match self.touch {
             Touch::Down { x_m, y_m, age_ticks } => {

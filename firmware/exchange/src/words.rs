@@ -49,7 +49,7 @@ pub(crate) fn take_bytes(count: usize, take: &mut impl FnMut() -> u32) -> TickBy
     while bytes.len() < count.min(TICK_BYTES_MAX) {
         let left = count - bytes.len();
         for byte in take().to_le_bytes().into_iter().take(left) {
-            // There is room: the loop's condition looked.
+            // There is room, as the loop's condition ensures.
             let _ = bytes.push(byte);
         }
     }

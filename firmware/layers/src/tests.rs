@@ -11,7 +11,7 @@ use crate::{Blend, Clicks, Layer, Record, Region};
 
 const HERE: Region = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
 
-/// A layer with all that it needs.
+/// A layer with its evaluation context.
 struct Bench {
     pool: Box<BitmapPool>,
     bitmap: Option<StoredBitmap>,
@@ -36,7 +36,7 @@ impl Bench {
         self.load(&Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer })
     }
 
-    /// On top of `below_n`.
+    /// Friction of a layer over `below_n`.
     fn over(&mut self, layer: &ActiveLayer, below_n: f32, inputs: Inputs) -> f32 {
         self.clicks.begin();
         let Self { pool, tables, clicks, .. } = self;
@@ -110,7 +110,7 @@ fn an_ellipse_touches_its_rectangle() {
     }
 }
 
-/// A square cut in two along a crooked line, and every place, those on vertices and edges among them, in one half.
+/// Every place of a square that is cut along a crooked line, vertices and edges included, is in exactly one half.
 #[cfg(feature = "polygon")]
 #[test]
 fn polygons_side_by_side_neither_overlap_nor_gap() {
@@ -256,7 +256,7 @@ fn a_grating_swings_between_trough_and_crest() {
     }
 }
 
-/// Around 2^31 and 2^32 ticks, too, the phase is a tick number times the step, and nothing jumps.
+/// The phase is the tick number times the step, without a jump, also around 2^31 and 2^32 ticks.
 #[cfg(all(feature = "grating", feature = "rings"))]
 #[test]
 fn what_drifts_is_exact_after_any_number_of_ticks() {
@@ -334,7 +334,7 @@ mod clicks {
 
     const CLICK: Click = Click { height_n: 1.0, decay_s: 1e-3 };
 
-    /// Friction at ticks in a row from `tick` on, at these places along x.
+    /// Friction at successive ticks from `tick` on, at these places along x.
     fn slide(bench: &mut Bench, layer: &ActiveLayer, tick: u32, places: impl IntoIterator<Item = f32>) -> Vec<f32> {
         (tick..).zip(places).map(|(tick, x_m)| bench.over(layer, 0.0, Inputs { tick, ..at(x_m, 0.04) })).collect()
     }
@@ -457,7 +457,7 @@ fn a_vibration_keeps_time() {
     }
 }
 
-/// Also when the tick count wraps within a burst.
+/// Also if the tick count wraps within a burst.
 #[cfg(feature = "vibration")]
 #[test]
 fn bursts_begin_when_their_layer_is_switched_on() {

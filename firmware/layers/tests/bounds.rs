@@ -1,4 +1,4 @@
-//! The largest electric friction that a scene can ask for.
+//! The largest electric friction of a scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use frixel_layers::{
@@ -10,7 +10,7 @@ fn largest_n(records: &[Record], points: &[Point]) -> f32 {
     electric_friction_max_n(&HEADER, records, points).unwrap()
 }
 
-/// What a header stores: at most 1 % more than the bound, and never less.
+/// Asserts that the friction stored in the header is at most 1 % above the bound, and never below it.
 #[track_caller]
 fn assert_largest(records: &[Record], expected_n: f32) {
     let found_n = largest_n(records, &[]);
@@ -67,7 +67,7 @@ fn a_click_comes_on_top() {
     assert_largest(&[Record { region, ..record(Layer::Button(button)) }], 0.01);
 }
 
-/// A stream asks for no more than its two numbers, and may be absent.
+/// A stream stays within its two numbers, and may be absent.
 #[test]
 fn a_stream_comes_and_goes() {
     let stream = record(Layer::Stream(Stream { low_n: 0.002, high_n: 0.006 }));

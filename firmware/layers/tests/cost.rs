@@ -1,4 +1,4 @@
-//! What a scene is estimated to cost.
+//! The estimated cost of a scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use frixel_layers::cost::{FLASH_WAIT_PERCENT, of_empty_scene, of_record, worst_of_scene};
@@ -8,7 +8,7 @@ use frixel_wire::hello::Core;
 
 const CONSTANT: Record = Record { blend: Blend::Add, ..constant(0.001) };
 
-/// The stream goes on wherever the finger is, and once for all layers that play it.
+/// A stream costs cycles wherever the finger is, once for all layers that play it.
 #[test]
 fn a_stream_costs_at_every_place() {
     let stream = |x_m| Record {
@@ -35,7 +35,7 @@ fn a_stream_costs_at_every_place() {
     assert_eq!(of(&[noise, stream(0.0), stream(0.03)]), with_stream);
 }
 
-/// An edge that is level with the finger is looked at closely.
+/// An edge level with the finger takes a closer test.
 #[test]
 fn a_polygon_costs_more_the_more_of_its_edges_are_level_with_one_place() {
     for core in [Core::CortexM4f, Core::CortexM0Plus] {

@@ -1,5 +1,5 @@
-//! A scene with a kind or a region whose feature is off is refused, and the error tells it from one that nobody knows.
-//! To see it refused: `cargo test -p frixel-layers --no-default-features --test disabled`.
+//! A scene with a disabled kind or region is refused, and the error distinguishes it from an unknown one. Run it with
+//! `cargo test -p frixel-layers --no-default-features --test disabled`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use frixel_layers::{FEATURES, KIND_FEATURES, KindFeature, Record, Region, disabled_record};

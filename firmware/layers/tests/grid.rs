@@ -34,7 +34,7 @@ proptest! {
         prop_assert_eq!(u64::from(first) | u64::from(others) << 32, 1 << layer);
     }
 
-    /// Nor one whose region is a polygon: places between two of its vertices are in its cells.
+    /// A place between two vertices of a polygon is always in one of the polygon's cells.
     #[test]
     fn no_polygon_is_lost(
         vertices in prop::collection::vec((-0.5_f32..1.5, -0.5_f32..1.5), 3..=32),

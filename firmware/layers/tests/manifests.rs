@@ -12,10 +12,10 @@ const MANIFESTS: [(&str, Option<&str>); 3] = [
     ("firmware/session/Cargo.toml", Some("frixel-layers")),
     ("firmware/board-nucleo-g474re/Cargo.toml", Some("frixel-session")),
 ];
-/// Regions are features, too. Those of the kinds stand before this one.
+/// The feature of polygon regions, before which the features of the kinds are listed.
 const AFTER: &str = "polygon";
 
-/// The manifest with the features of the kinds that it lacks.
+/// The manifest with the missing features of kinds added.
 fn with_features(manifest: &str, forwarded: Option<&str>) -> String {
     let mut text = manifest.to_owned();
     for kind in KIND_FEATURES {
@@ -37,7 +37,7 @@ fn with_features(manifest: &str, forwarded: Option<&str>) -> String {
     text
 }
 
-/// Where the comment above the line after this line break begins.
+/// Start of the comment above the line after this line break.
 fn start_of_comment(text: &str, line_break: usize) -> usize {
     match text[..line_break].rfind('\n') {
         Some(before) if text[before..].starts_with("\n#") => start_of_comment(text, before),

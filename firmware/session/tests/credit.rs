@@ -1,5 +1,4 @@
-//! Credit: how many bytes a host may have under way, and what happens to a client that sends more (`PROTOCOL.md`,
-//! section 9).
+//! Credit: the number of bytes that a host may have in flight, and clients that exceed it (`PROTOCOL.md`, section 9).
 
 use crate::support;
 
@@ -21,13 +20,13 @@ fn requests(command: Command, len: usize) -> Vec<u8> {
     frame.repeat(len.div_ceil(frame.len()))
 }
 
-/// Requests of `command` that fill the window, and fit into it.
+/// Requests of `command` that fill the window without exceeding it.
 fn window_of(command: Command) -> Vec<u8> {
     let frame = request(0, command);
     frame.repeat(WINDOW / frame.len())
 }
 
-/// A playing board with no bytes under way, and a client that stops reading.
+/// A playing board with no bytes in flight, and a client that stops reading.
 fn playing() -> TestBoard {
     let mut board = TestBoard::new();
     board.play(&constant_scene(0.02));
@@ -80,7 +79,7 @@ fn a_frame_beyond_the_credit_is_no_touch() {
     assert_eq!(count_orders(&mut board, &requests(touch, WINDOW)), (false, 0));
 }
 
-/// What a client has left behind, however much it is, keeps nothing playing.
+/// Bytes left behind by a client do not keep a scene playing, however many there are.
 #[test]
 fn a_client_that_ignores_credit_and_reads_nothing_is_silent_after_its_window() {
     let mut board = playing();
@@ -118,7 +117,7 @@ fn credit_comes_back_when_answers_are_read() {
     assert_eq!((after - before) as usize, request(2, Command::Ping).len());
 }
 
-/// Several hello requests may be under way before the first answer comes.
+/// Several hello requests may be in flight before the first answer arrives.
 #[test]
 fn a_hello_request_needs_no_credit_and_sets_it_anew() {
     let mut board = playing();
@@ -130,7 +129,7 @@ fn a_hello_request_needs_no_credit_and_sets_it_anew() {
     assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (false, 0));
 }
 
-/// The end of a frame has come when there is credit again, its beginning was beyond it.
+/// The frame begins beyond the credit, and ends when there is credit again.
 #[test]
 fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
     let mut board = playing();
@@ -156,7 +155,7 @@ fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
     assert_eq!(count_orders(&mut board, &request(1, Command::Ping)), (true, 0));
 }
 
-/// Nothing in it can be answered, so nothing is granted for it.
+/// The window contains nothing to answer, so no credit is granted for it.
 #[test]
 fn a_window_without_a_zero_byte_leaves_credit_for_a_hello_request_alone() {
     let mut board = playing();
@@ -182,7 +181,7 @@ fn noise_does_not_use_credit_up() {
     assert!(!board.messages.iter().any(|message| matches!(message, FromBoard::StateChanged { .. })));
 }
 
-/// The most that may be outstanding, each of them a refusal with all its numbers, behind a host that is away.
+/// The largest number of outstanding answers, each a refusal with all its numbers, to a host that does not read.
 #[cfg(feature = "telemetry")]
 #[test]
 fn an_answer_always_has_its_place_and_telemetry_is_left_out() {

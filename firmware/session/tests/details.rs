@@ -1,4 +1,4 @@
-//! Details of `PROTOCOL.md`: frames that are not understood, the order of refusals, uploads, numbers of a scene.
+//! Details of `PROTOCOL.md`: frames that cannot be parsed, the order of refusals, uploads, numbers of a scene.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
@@ -12,7 +12,7 @@ use support::{TestBoard, constant_scene};
 /// Ticks of the host timeout of these scenes, and a margin.
 const TIMEOUT_TICKS: u32 = 11_000;
 
-/// Sends a payload, whatever it says.
+/// Sends a payload, which need not be valid.
 fn send(board: &mut TestBoard, payload: &[u8]) -> usize {
     let mut frame = [0; FRAME_MAX_LEN];
     let frame = encode(payload, &mut frame).unwrap().to_vec();

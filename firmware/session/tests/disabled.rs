@@ -1,4 +1,4 @@
-//! What the firmware was built without is refused by name, and the rest plays.
+//! Scenes that need a disabled feature are refused by name, and all others play.
 
 use crate::support;
 
@@ -24,7 +24,7 @@ fn the_hello_tells_what_there_is() {
     assert_eq!(hello.limits.bitmap_pool_bytes > 0, BITMAP_POOL_LEN > 0);
 }
 
-/// Cargo builds the tests of the workspace with the features of all crates together: a kind is there, or it is refused.
+/// A kind is enabled or refused: Cargo builds the workspace's tests with the features of all crates together.
 #[test]
 fn a_layer_plays_or_is_refused_by_its_number() {
     let mut board = TestBoard::connected();

@@ -1,4 +1,4 @@
-//! A finger's empirical law is played as it is stated, and refused where it is none.
+//! A finger's empirical law is played as stated, and an invalid law is refused.
 #![cfg(feature = "empirical")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 #![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
@@ -188,8 +188,8 @@ fn a_gain_beyond_the_law_gives_its_largest_voltage() {
     }
 }
 
-/// Friction that rises through the table's least makes the drive step from zero to a part of the largest voltage, and
-/// fall back the same way: at the slew limit, without more voltage than it ends at.
+/// Friction that rises through the table's least makes the drive step from zero to a part of the largest voltage; when
+/// it falls, the drive steps back. Both steps take place at the slew limit, without overshoot.
 #[test]
 fn the_least_friction_of_a_law_is_a_step_at_the_slew_limit() {
     const SLEW_V_PER_S: f32 = 2e5;

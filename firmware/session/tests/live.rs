@@ -100,7 +100,7 @@ mod streams {
     }
 }
 
-/// Two fingers at a time, from a host that has a touchscreen: the committed scene says which one is followed.
+/// The host's touchscreen reports two fingers at a time; the committed scene determines which one is followed.
 #[test]
 fn the_scene_says_which_of_two_fingers_is_followed() {
     for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {

@@ -1,4 +1,4 @@
-//! The device's loader: what it refuses by number, and that no bytes make it or the tick panic.
+//! The board's loader: its numbered refusals, and that no bytes make it or the tick panic.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;

@@ -331,12 +331,12 @@ const REAL_BOARD: Board = Board {
     },
     ..Board::SIMULATOR
 };
-/// Ticks of those switching times, and the two in which an edge of the enable shows.
+/// The switching times in ticks, plus the two ticks after which the monitor shows an edge of the enable.
 const SWITCHING_TICKS: u32 = 42;
 /// Ticks with a wrong monitor voltage after which the board faults.
 const WRONG_TICKS: u32 = 16;
 
-/// `frixel-control` tests what the monitor takes for zero, and when (`monitor`).
+/// `frixel-control` tests the monitor's tolerance at zero, and its timing (`monitor`).
 #[test]
 fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     for command in [Command::Stop, Command::Disarm] {
@@ -353,7 +353,7 @@ fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     }
 }
 
-/// The amplifier keeps a rest of its voltage until it has switched on again.
+/// The amplifier keeps a residual voltage until it has switched on again.
 #[test]
 fn a_finger_that_comes_back_before_the_amplifier_is_off_is_no_fault_unless_the_rest_stays() {
     for (off_ticks, is_stuck) in [1, 5, 20, 39].into_iter().flat_map(|ticks| [(ticks, false), (ticks, true)]) {

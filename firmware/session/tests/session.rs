@@ -1,4 +1,4 @@
-//! What a host can say to a board, and what the board answers.
+//! The commands of a host, and the board's answers.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
@@ -159,7 +159,7 @@ fn a_peak_that_would_hurt_through_a_bridged_coating_is_refused_at_every_carrier(
     }
 }
 
-/// What PROTOCOL.md says of `00 00 00 80`.
+/// `00 00 00 80` is a zero, as `PROTOCOL.md` states.
 #[test]
 fn minus_zero_is_a_zero() {
     let mut board = TestBoard::connected();
@@ -172,7 +172,8 @@ fn minus_zero_is_a_zero() {
     assert!(matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::FrictionCoefficient));
 }
 
-/// A scene may say its largest friction although its layers may be changed: what a change makes larger is clamped.
+/// A scene may state its largest friction although its layers may be changed. Larger friction after a change is
+/// clamped.
 #[test]
 fn a_largest_friction_without_fixed_layers_is_taken() {
     let mut board = TestBoard::connected();
@@ -201,7 +202,7 @@ fn bytes_that_are_not_a_scene_are_refused() {
     );
 }
 
-/// The bytes of a scene with few points and many records are no more than those of one with many points.
+/// A scene with few points and many records is no longer, in bytes, than an accepted one with many points.
 #[test]
 fn a_scene_of_more_records_than_the_board_says_is_refused() {
     let mut board = Board::SIMULATOR;
@@ -242,7 +243,7 @@ fn answered(board: &mut TestBoard) -> Vec<u16> {
     board.messages.drain(..).filter_map(sequence).collect()
 }
 
-/// What a host must be able to say at any time does not wait for the work of a commit that came before it.
+/// Messages that a host must be able to send at any time do not wait for an earlier commit.
 #[test]
 fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
     let mut board = TestBoard::new();
@@ -399,7 +400,7 @@ fn telemetry_comes_at_its_period_and_ends() {
 fn orders_that_zero_the_output_always_have_room() {
     let mut board = TestBoard::connected();
     board.load(&constant_scene(0.01)).unwrap();
-    // All in one piece, before the ticker has looked.
+    // All in one call, before the ticker has run.
     let mut bytes = Vec::new();
     let commands = [Command::Arm, Command::Play, Command::Stop, Command::Play, Command::Stop, Command::Play];
     for (sequence, command) in
@@ -427,7 +428,7 @@ fn the_same_bytes_in_another_shape_are_another_bitmap() {
     assert_eq!(board.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
 }
 
-/// Two pictures that are never under the finger at once, which would take too long.
+/// Two pictures side by side. Both under the finger at once would take too long.
 #[cfg(feature = "bitmap")]
 fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
     let beside = |x_m, crc32| {
@@ -469,7 +470,7 @@ fn announced_bitmaps_stay_however_often_they_are_named() {
     board.load(&scene(&HEADER, &both)).unwrap();
 }
 
-/// A scene that does not fit leaves the pool to the next.
+/// A refused scene frees its part of the pool for the next scene.
 #[cfg(feature = "bitmap")]
 #[test]
 fn bitmaps_of_a_scene_that_was_refused_give_way() {
@@ -487,7 +488,7 @@ fn bitmaps_of_a_scene_that_was_refused_give_way() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Bytes that nobody meant never reach the output and never stop the board.
+    /// Arbitrary bytes never reach the output, and never stop the board.
     #[test]
     fn arbitrary_bytes_leave_the_board_disarmed_and_listening(
         bytes in proptest::collection::vec(any::<u8>(), 0..2000),
@@ -501,7 +502,7 @@ proptest! {
         prop_assert_eq!(board.hello().state, State::Disarmed);
     }
 
-    /// A scene of arbitrary numbers is refused or loaded, and whatever it asks for stays within the limits.
+    /// A scene of arbitrary numbers is refused, or loaded with an output that stays within the limits.
     #[test]
     fn arbitrary_scenes_never_drive_beyond_the_limits(
         floats in proptest::collection::vec(prop_oneof![any::<f32>(), -1.0_f32..200.0], 12),
@@ -541,7 +542,7 @@ proptest! {
     }
 }
 
-/// What a command makes the session order, signs of life left out.
+/// The session's orders for a command, without signs of life.
 fn orders_for(board: &mut TestBoard, command: Command) -> Vec<Order<'static>> {
     board.session.receive(&request(7, command), &board.ticker.status());
     std::iter::from_fn(|| board.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
@@ -582,7 +583,7 @@ fn a_board_with_a_touch_source_takes_none_from_the_host() {
     assert!(board.session.next_order().is_none());
 }
 
-/// The text as a host puts it together.
+/// The fault text, assembled from its pieces as a host does.
 fn fault_text(board: &mut TestBoard) -> String {
     let mut text = Vec::new();
     loop {

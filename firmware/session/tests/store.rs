@@ -1,4 +1,4 @@
-//! The stored limits: a copy is there whole, whenever the power fails.
+//! The stored limits: a complete copy survives a power failure at any time.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;
@@ -21,7 +21,7 @@ fn content(seed: u8) -> [u8; LIMITS_LEN] {
     std::array::from_fn(|at| (at as u8).wrapping_mul(31) ^ seed)
 }
 
-/// Writes until it is done, has failed, or the power goes.
+/// Writes until the copy is written, the flash has failed, or the power fails.
 fn write(flash: &mut SimulatedFlash, content: &[u8; LIMITS_LEN]) -> Writing {
     let mut writer = Writer::new(SLOT, flash, content);
     loop {
@@ -32,7 +32,7 @@ fn write(flash: &mut SimulatedFlash, content: &[u8; LIMITS_LEN]) -> Writing {
     }
 }
 
-/// A flash in which these were written, one after the other.
+/// A flash to which these contents were written, one after the other.
 fn flash_with(contents: &[&[u8; LIMITS_LEN]], torn_words_read: bool) -> SimulatedFlash {
     let mut flash = SimulatedFlash::new(PAGES, torn_words_read);
     for content in contents {
@@ -70,7 +70,7 @@ fn a_power_cut_at_any_byte_leaves_one_good_copy() {
 }
 
 proptest! {
-    /// Any number of cuts, one after the other: what was whole before is there until something newer is.
+    /// After any number of power cuts, the last complete copy remains until a newer one is complete.
     #[test]
     fn cuts_in_a_row_lose_nothing(
         cuts in proptest::collection::vec(0_usize..PAGE_LEN + 80, 1..12),
@@ -118,7 +118,7 @@ fn the_first_copy_is_what_a_writer_leaves_in_an_erased_flash() {
     assert_eq!(flash.bytes[PAGE_LEN..PAGE_LEN + COPY_LEN], first_copy(&content(1)));
 }
 
-/// A build with the other setting starts as if nothing were stored, and every start says what is the matter.
+/// A build with the other setting starts as if nothing were stored, and every start reports the reason.
 #[test]
 fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
     let built_in = BoardLimits { voltage_max_v_peak: 50.0, full_scale_v_peak: 300.0, ..Board::NUCLEO_G474RE.limits };
@@ -160,7 +160,7 @@ fn a_board_starts_with_stored_limits_only_if_its_build_allows_them() {
     assert_eq!(board.hello().notices, refused);
 }
 
-/// In the pages of the limits they are a notice, elsewhere nothing.
+/// In the pages of the limits they cause a notice; elsewhere they are ignored.
 #[test]
 fn bytes_of_another_layout_are_never_limits() {
     let built_in = Board::NUCLEO_G474RE.limits;

@@ -1,4 +1,4 @@
-//! A table that ends at the largest friction that the header names plays the scene as the whole table does.
+//! A table that ends at the header's largest friction plays the scene like the whole table.
 #![cfg(all(feature = "bitmap", feature = "stream", feature = "sine-carrier"))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
@@ -24,7 +24,7 @@ fn rows(scene: &[u8]) -> TableRows {
     table_rows(&Scene::parse(scene).unwrap(), &Board::SIMULATOR).unwrap()
 }
 
-/// What a header says of the largest friction of a scene whose layers stay as they are.
+/// The largest friction in the header of a scene with fixed layers.
 fn largest_n(random: &RandomScene) -> Option<f32> {
     electric_friction_max_n(&random.header, &random.records, &random.points)
 }
@@ -33,7 +33,7 @@ fn cut_header(random: &RandomScene) -> Header {
     Header { electric_friction_max_n: largest_n(random), ..random.header }
 }
 
-/// What a board made of a scene at one tick.
+/// A board's commanded friction, DAC code and flags at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Played {
     commanded_bits: u32,
@@ -75,8 +75,7 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
 
-    /// The same codes and flags at every tick, so that no tick asks for more than the cut table has: it would be
-    /// flagged.
+    /// Codes and flags are the same at every tick. A flag would be set if a tick requested more than the cut table has.
     #[test]
     fn no_tick_sees_the_cut(seed in any::<u64>()) {
         let random = RandomScene::new(seed, bitmap_crc32(3, 2, &SAMPLES));
@@ -89,7 +88,7 @@ proptest! {
     }
 }
 
-/// So that the test above has something to see.
+/// Ensures that the test above is not vacuous.
 #[test]
 fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
     let crc32 = bitmap_crc32(3, 2, &SAMPLES);
@@ -122,7 +121,7 @@ fn a_table_ends_where_the_header_says() {
     assert_eq!(of(Some(0.0)).filled, 1);
 }
 
-/// Above the row that the table ends in, friction is out of reach, and the board says so.
+/// Above the last row of the table, friction is out of reach, and the board counts it as saturated.
 #[test]
 fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
     for (electric_friction_max_n, saturated) in [(None, false), (Some(0.02), false), (Some(0.005), true)] {

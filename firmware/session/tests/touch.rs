@@ -114,7 +114,7 @@ fn lift_of_host(board: &mut TestBoard) {
     board.session.receive(&request(998, Command::Lift), &board.ticker.status());
 }
 
-/// `receive` does not carry a commit out, whatever follows it on the line: it still takes its steps, one a poll.
+/// `receive` never carries out a commit, whatever follows it on the line: each poll takes one step.
 #[test]
 fn a_lift_during_the_largest_commit_acts_within_2_ms() {
     for pipelined in [&[][..], &pipelined()] {
@@ -133,7 +133,7 @@ fn a_lift_and_a_touch_down_in_one_tick_are_zero_output_for_a_tick() {
     assert_ne!(board.tick(), OFF, "the finger is there again");
 }
 
-/// A lift that a track does not report, but its contact number does.
+/// A lift that was not reported, but shows in the track's contact number.
 #[test]
 fn another_contact_is_a_lift_first() {
     let header = Header { slew_v_per_s: 1e5, ..HEADER };
@@ -151,7 +151,7 @@ fn another_contact_is_a_lift_first() {
     assert!(before_v_rms > 100.0 && (after_v_rms - 2.5).abs() < 1e-3, "the envelope begins anew: {after_v_rms} V");
 }
 
-/// The track that the session makes of a report, and does not hand over.
+/// The session's track for a report; the ticker does not receive it.
 fn next_track(board: &mut TestBoard, touch: Touch) -> Track {
     board.session.touch(touch, board.ticker.status().telemetry.tick + 1);
     loop {

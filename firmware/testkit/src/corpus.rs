@@ -1,9 +1,9 @@
-//! Corpora: Markdown files of inputs, each followed by what must be said to it.
+//! Corpora: Markdown files of inputs, each followed by the expected messages.
 //!
-//! A heading names the cases below it. A code block with the name of a file behind its language, such as
-//! `toml scene.toml`, is an input, or so many copies of it: `toml scene.toml x65`. Blocks of the introduction stand at
-//! the beginning of the file of the same name in each case. The block with the language `says` ends a case with what
-//! must be said. A test makes the page anew with what is said now and holds it as a [golden file](crate::golden).
+//! A heading names the cases below it. A code block with a file name after its language, such as `toml scene.toml`, is
+//! an input, or several copies of it: `toml scene.toml x65`. Blocks of the introduction are prepended to the file of
+//! the same name in each case. A block with the language `says` ends a case with the expected messages. A test
+//! regenerates the page with the current messages, and compares it as a [golden file](crate::golden).
 //!
 //! ````text
 //! # Layers
@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 use crate::golden;
 
 const FENCE: &str = "```";
-/// The language of the block with what must be said.
+/// The language of the block with the expected messages.
 const SAYS: &str = "says";
 
 /// The inputs of a case.
@@ -50,7 +50,7 @@ pub struct Case {
 ///
 /// # Panics
 ///
-/// It cannot be read, or has none.
+/// The folder cannot be read, or has no pages.
 #[track_caller]
 pub fn pages(folder: &Path) -> Vec<PathBuf> {
     let pages = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
@@ -61,19 +61,20 @@ pub fn pages(folder: &Path) -> Vec<PathBuf> {
     pages
 }
 
-/// Plays all cases of a page, and holds what is said to them. `answer` takes the inputs of a case and returns the lines
-/// that are said.
+/// Runs all cases of a page, and compares their messages with the page.
+///
+/// `answer` takes the inputs of a case and returns the lines of its messages.
 ///
 /// # Panics
 ///
-/// Something else is said to a case than the page has, or the page cannot be read.
+/// A case has other messages than the page states, or the page cannot be read.
 #[track_caller]
 pub fn hold(page: &Path, mut answer: impl FnMut(&Case) -> String) {
     let text = fs::read_to_string(page).unwrap_or_else(|error| panic!("{}: {error}", page.display()));
     golden::hold(page, &answered(&text, &mut answer));
 }
 
-/// A page with what is said now in the place of what must be said.
+/// A page with its expected messages replaced by the current ones.
 fn answered(page: &str, answer: &mut impl FnMut(&Case) -> String) -> String {
     let mut answered = String::new();
     let mut introduction = BTreeMap::new();

@@ -1,16 +1,16 @@
-//! Golden files: files of the repository that a test makes anew and compares.
+//! Golden files: files of the repository that a test regenerates and compares.
 #![allow(clippy::panic, reason = "part of a test, which may fail")]
 
 use std::path::Path;
 use std::{env, fs, thread};
 
-/// The environment variable that has tests write their golden files anew.
+/// The environment variable that makes tests rewrite their golden files.
 const BLESS: &str = "FRIXEL_BLESS";
 
-/// The line behind a part of a page that a test makes.
+/// The line after a generated part of a page.
 const PART_END: &str = "<!-- end -->";
 
-/// Whether golden files are to be written anew.
+/// Whether golden files are to be rewritten.
 pub fn is_blessing() -> bool {
     env::var_os(BLESS).is_some()
 }

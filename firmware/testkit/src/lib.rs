@@ -1,12 +1,12 @@
 //! Test support that several crates share, on desktop and chip. No image of a real board contains it.
 //!
 //! - [`HEADER`], [`record`], [`scene`]: scenes to begin with.
-//! - [`samples`]: a sample of each kind of layer, from which tests and benchmarks make what they need of every kind.
+//! - [`samples`]: a sample of each kind of layer, from which tests and benchmarks are generated.
 //! - [`IdealMonitor`]: the monitor readings of an ideal amplifier.
 //! - [`Random`]: random numbers that depend on the seed only, not on the platform.
 //! - [`RandomScene`], [`RandomFinger`]: scenes that a board accepts, and fingers to play them under.
 //! - `examples`: the scenes in a page of documentation.
-//! - `golden`: files of the repository that a test makes anew and compares.
+//! - `golden`: files of the repository that a test regenerates and compares.
 //!
 //! ```
 //! use frixel_testkit::{Pace, RandomFinger, RandomScene};

@@ -19,7 +19,7 @@ fn every_kind_has_a_sample() {
     }
 }
 
-/// What a layer is estimated to cost is what was measured under the name of its case.
+/// The estimated cost of a layer is the cost measured under the name of its case.
 #[test]
 fn samples_cost_what_was_measured() {
     let measured = |name: &str| {

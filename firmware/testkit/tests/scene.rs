@@ -1,4 +1,4 @@
-//! Scenes that are refused, each with its reason; `golden.rs` has those that are read.
+//! Scenes that are refused, each with its reason; `golden.rs` has the accepted ones.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
 use crate::support;
@@ -29,7 +29,7 @@ fn another_version_is_refused_whatever_its_length() {
     assert_eq!(refused(&[3, 0]), SceneError::Version { found: 3 });
 }
 
-/// Cut anywhere or longer by a byte or a record.
+/// Truncated anywhere, or longer by a byte or a record.
 #[test]
 fn another_length_is_refused() {
     let mut bytes = support::scene();
@@ -213,7 +213,7 @@ fn bytes_that_something_uses_are_read() {
     }
 }
 
-/// The record that is wrong is the one that is named.
+/// An error names the record that is wrong.
 #[test]
 fn errors_name_the_record() {
     for number in 0..4u8 {
@@ -222,7 +222,7 @@ fn errors_name_the_record() {
     }
 }
 
-/// Numbers are the board's to judge: any bits go through.
+/// Parsing accepts any number: the board checks the ranges.
 #[test]
 fn any_number_goes_through() {
     for bits in [0x7fc0_0000, 0x7f80_0001, 0xffff_ffff, 0x7f80_0000, 0x8000_0000, 1] {

@@ -140,8 +140,8 @@ fn zeros_between_frames_are_no_error() {
     assert_eq!((decoder.frames(), decoder.rejected()), (2, 0));
 }
 
-/// Frames that are right but for their length, one whose longest allowed beginning is right; and a frame hidden behind
-/// an overlong one, which must not be found.
+/// Frames that are too long but otherwise valid, one of them with a valid beginning of the largest length; and a valid
+/// frame inside an overlong one, which must not be found.
 #[test]
 fn overlong_frames_are_dropped_whole() {
     let with_crc = |len| {
@@ -150,7 +150,7 @@ fn overlong_frames_are_dropped_whole() {
     };
     let right = with_crc(PAYLOAD_MAX_LEN);
     for body in [with_crc(PAYLOAD_MAX_LEN + 1), [right.as_slice(), &[0x55]].concat(), right.repeat(2)] {
-        // Written with lengths of its own: `encode` makes no such frame.
+        // Encoded here, since `encode` makes no such frame.
         let cobs: Vec<u8> = body.chunks(253).flat_map(|run| [&[run.len() as u8 + 1], run].concat()).collect();
         assert!(!cobs.contains(&0));
         let (payloads, decoder) = decode(&[cobs.as_slice(), &[0], &frame(b"next")].concat());

@@ -26,7 +26,7 @@ fn lines(text: &str, kind: &str) -> impl Iterator<Item = Vec<u8>> {
     text.lines().filter_map(move |line| line.strip_prefix(kind)?.strip_prefix(' ')).map(from_hex)
 }
 
-/// Holds the payloads and frames of these samples, and reads them back.
+/// Compares the payloads and frames of these samples with the golden file, and reads them back.
 fn hold_frames(name: &str, samples: &[Payload]) {
     let mut text = String::new();
     for sample in samples {

@@ -203,8 +203,8 @@ fn field_names(debug: &str) -> Vec<&str> {
     fields.split(outermost).filter_map(|field| Some(field.split_once(':')?.0.trim())).collect()
 }
 
-/// Every byte of a layout stands in its table, once. Which field it belongs to is for the golden bytes and
-/// `the_layout_is_frozen` to hold.
+/// Every byte of a layout is in its table, exactly once. The golden bytes and `the_layout_is_frozen` check which field
+/// it belongs to.
 #[test]
 fn layouts_have_no_gap() {
     for (line, len) in
@@ -255,7 +255,7 @@ fn the_page_and_its_client_are_short() {
     assert!(client.starts_with("python\n") && client.lines().count() - 1 <= 80, "{}", client.lines().count());
 }
 
-/// Numbers that stand in the text.
+/// The constants stated in the text.
 #[test]
 fn constants_are_those_of_the_text() {
     assert_eq!((FRAME_MAX_LEN, PAYLOAD_MAX_LEN), (192, 186));

@@ -75,7 +75,7 @@ fn flags_say_all_that_is_set() {
     assert_eq!(Flags(0x8201).to_string(), format!("{}; flags 0x8200, which this program does not know", named[0]));
 }
 
-/// Bits that this crate does not know are left out: only a newer host can say what they mean.
+/// Unknown bits are omitted, since only a newer host can interpret them.
 #[test]
 fn every_known_notice_is_said() {
     let said = |notices| Hello { notices, ..samples::hello() }.notice_sentences().collect::<Vec<_>>();

@@ -7,8 +7,8 @@ fn close(found: f64, expected: f64, part: f64) {
     assert!((found / expected - 1.0).abs() < part, "{found} is not {expected}");
 }
 
-/// The bound of the firmware, as this module finds it for one series resistance: the ratio of 0.7 mA to the largest
-/// current at the bound, of all coatings.
+/// Margin of the firmware's bound for one series resistance: the ratio of 0.7 mA to the largest current at the bound,
+/// over all coatings.
 fn margin(series_ohm: f64, carrier_hz: f64) -> f64 {
     let worst = TouchPath::worst_coating(series_ohm, carrier_hz);
     let bound_v_peak = f64::from(TouchBound::behind(series_ohm as f32).voltage_max_v_peak(carrier_hz as f32));
@@ -25,7 +25,7 @@ fn at_the_bound_no_coating_and_no_envelope_lets_more_than_allowed_through() {
     }
 }
 
-/// A bound that is lower than it must be takes friction away.
+/// A bound that is needlessly low costs friction.
 #[test]
 fn the_bound_is_within_an_eighth_of_what_is_allowed() {
     for carrier_hz in CARRIERS_HZ {

@@ -21,7 +21,7 @@ pub(crate) const BOARD: Board = Board {
     ..Board::SIMULATOR
 };
 
-/// The limits with which bring-up begins, behind 68 kOhm. [`BOARD`] drives a capacitor that nobody touches.
+/// The limits with which bring-up begins, for 68 kOhm. [`BOARD`] drives a capacitor that cannot be touched.
 pub(crate) const BUILT_IN: BoardLimits = BoardLimits { series_resistance_ohm: 68e3, ..BOARD.limits };
 
 /// Session, ticker and supervisor of the board, whose memory lives as long as the program, and its monitor.

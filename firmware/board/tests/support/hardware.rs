@@ -19,7 +19,7 @@ use super::firmware::{BOARD, monitor};
 pub(crate) const PERIOD_CYCLES: u32 = 4_250;
 pub(crate) const DEADLINE_CYCLES: u32 = 3_700;
 
-/// What a part of the board was told.
+/// A call of a part of the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Event {
     Sent(DacCode),
@@ -36,7 +36,7 @@ pub(crate) enum Event {
 /// The wires of the board, which its parts share with the test.
 pub(crate) struct Wires {
     pub(crate) events: RefCell<Vec<Event>>,
-    /// Cycles that the tick has taken when it asks.
+    /// Cycles since the start of the period when the tick reads the timer.
     pub(crate) cycles: Cell<u32>,
     /// The next period begins before the tick ends.
     pub(crate) overruns: Cell<bool>,
@@ -46,7 +46,7 @@ pub(crate) struct Wires {
     pub(crate) ready: Cell<bool>,
     pub(crate) switch_closed: Cell<bool>,
     pub(crate) light: Cell<bool>,
-    /// What the DAC answers when it is read back.
+    /// Result of reading the DAC's configuration back.
     pub(crate) dac: Cell<Result<(), u32>>,
     /// Result of the serial port's calls.
     pub(crate) port: Cell<Result<(), ErrorKind>>,
@@ -86,7 +86,7 @@ impl Wires {
         self.events.borrow_mut().push(event);
     }
 
-    /// What was said since the last call.
+    /// The events since the last call.
     pub(crate) fn take(&self) -> Vec<Event> {
         self.events.take()
     }
@@ -106,7 +106,7 @@ thread_local! {
     static TICK: RefCell<Option<Tick<Fake>>> = const { RefCell::new(None) };
 }
 
-/// Leaves the tick to [`run_tick`].
+/// Stores the tick for [`run_tick`].
 pub(crate) fn start(tick: Tick<Fake>) {
     TICK.set(Some(tick));
 }

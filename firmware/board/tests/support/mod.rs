@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Helpers shared by the tests.
 #![allow(dead_code, reason = "a test uses its part")]
 
 pub(crate) mod firmware;

@@ -1,4 +1,4 @@
-//! The person of bring-up, who does what the board says.
+//! The simulated person of bring-up, who follows the board's instructions.
 #![allow(clippy::panic, reason = "a test may fail")]
 
 use frixel_board::bring_up::{Sync, TestOutput};
@@ -6,7 +6,7 @@ use frixel_board::bring_up::{Sync, TestOutput};
 /// The parts between the processor's enable and the amplifier's, or a defect of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EnablePath {
-    /// As it must be.
+    /// No defect.
     Right,
     /// Gate and monostable are bridged: the processor's enable passes.
     MonostableBridged,
@@ -72,7 +72,7 @@ pub(crate) struct Instruments {
     pub(crate) probe_v: f32,
 }
 
-/// Whether ready is high after the person has done what was said; `None` if that does not concern it.
+/// Level of ready after the person has followed an instruction; `None` if the instruction does not affect it.
 pub(crate) fn ready_after(said: &str) -> Option<bool> {
     let said = said.to_lowercase();
     let says = |what: &str| said.contains(what);
@@ -85,7 +85,7 @@ pub(crate) fn ready_after(said: &str) -> Option<bool> {
     }
 }
 
-/// Whether the contact is closed after the person has done what was said.
+/// Whether the contact is closed after the person has followed an instruction; `None` if unaffected.
 pub(crate) fn contact_after(said: &str) -> Option<bool> {
     match said.to_lowercase() {
         said if said.contains("hold the switch.") => Some(true),

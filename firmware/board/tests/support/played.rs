@@ -56,7 +56,7 @@ impl Board {
         self.main_loop.turn(None);
     }
 
-    /// The same, with the host on the board.
+    /// As [`Self::step`], with the host on the board.
     pub(crate) fn step_with_host(&mut self) {
         self.step();
         let Self { main_loop, drive, shared, .. } = self;
@@ -76,7 +76,7 @@ impl Board {
         self.main_loop.status.telemetry.state
     }
 
-    /// A board whose person holds the switch, until `done`.
+    /// Runs a board whose switch is held until `done`.
     pub(crate) fn until(done: impl Fn(&Self) -> bool) -> Self {
         let mut board = Self::new();
         for _ in 0..BOARD.tick_hz / 100 {

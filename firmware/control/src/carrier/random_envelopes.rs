@@ -8,9 +8,9 @@ use super::*;
 const TICK_S: f64 = 25e-6;
 const FULL_SCALE_V_PEAK: f32 = 250.0;
 const VOLTAGE_MAX_V_RMS: f32 = 130.0;
-/// Below, half a step of the DAC is more than 0.1 % of the mean square.
+/// Lowest checked voltage, V rms. Below it, half a step of the DAC is more than 0.1 % of the mean square.
 const CHECKED_FROM_V_RMS: f32 = 8.0;
-/// A million in all.
+/// Ticks per carrier; a million in all.
 const TICKS_PER_CARRIER: u32 = 40_000;
 
 /// Time constants of amplifier and series resistor, in seconds.
@@ -26,7 +26,7 @@ impl Lags {
     /// `docs/board/hardware.md`: 20 kHz, and 68 kOhm before 0.53 nF.
     const G474: Self = Self { amplifier_s: 8e-6, series_s: 36e-6 };
 
-    /// The board's limit of that name: the one lag that takes as much of the mean square.
+    /// The board's limit of that name: the single lag with the same loss of mean square.
     fn edge_time_constant_s(self) -> f64 {
         let both_s = self.amplifier_s + self.series_s;
         both_s - self.amplifier_s * self.series_s / both_s
@@ -66,8 +66,10 @@ fn random_voltage_v_rms(random: &mut Random) -> f32 {
     random.pick([VOLTAGE_MAX_V_RMS, 0.0, between, between])
 }
 
-/// An envelope in segments: it holds, moves to another voltage at once or along a ramp, follows the carrier's clock,
-/// which is the worst for the integral, or the output is zero, as without a finger.
+/// An envelope in random segments.
+///
+/// It holds, jumps or ramps to another voltage, resonates with the carrier, which is the worst case for the integral,
+/// or is absent, with zero output as without a finger.
 struct Envelopes {
     random: Random,
     half_period_ticks: u32,
@@ -127,7 +129,7 @@ impl Envelopes {
     }
 }
 
-/// Checks [`TICKS_PER_CARRIER`] ticks of a carrier. Returns in how many ticks the mean square was checked.
+/// Checks [`TICKS_PER_CARRIER`] ticks of a carrier. Returns the number of ticks in which the mean square was checked.
 fn check(waveform: Waveform, half_period_ticks: u32, lags: Lags, seed: u32) -> u32 {
     let edges = Edges {
         waveform,

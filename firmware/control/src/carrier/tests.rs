@@ -48,7 +48,7 @@ fn codes(carrier: &mut Carrier, timing: &CarrierTiming, envelope_v_rms: f32, tic
     (0..ticks).map(|tick| i32::from(carrier.next(envelope_v_rms, timing, tick).bits())).collect()
 }
 
-/// Numbers that no session computes, and an envelope that no table gives.
+/// With conversions that no session computes, and envelopes that no table returns.
 #[test]
 fn no_envelope_and_no_conversion_give_a_code_beyond_the_limit() {
     let numbers = [0.0, 1.0, -1.0, 1e3, -1e3, f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
@@ -213,7 +213,7 @@ fn an_integral_beyond_a_new_limit_only_falls_and_slowly() {
     }
 }
 
-/// To the nearest code, so that a small voltage is not lost.
+/// Rounding to the nearest code keeps small voltages.
 #[test]
 fn codes_are_rounded_to_the_nearest() {
     let timing = timing(Waveform::Square, 20);

@@ -305,8 +305,8 @@ fn an_offset_within_tolerance_is_no_gain() {
     }
 }
 
-/// It is right until the half period ends, and in every other one: 1.5 ms from 500 Hz on, and 0.5 ms after the half
-/// period on a slower carrier.
+/// The monitor reads right until the half period ends, and in every other half period: 1.5 ms from 500 Hz on, and 0.5
+/// ms after the half period on a slower carrier.
 #[test]
 fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_after_the_half_period() {
     for voltage_v in [20.0, 50.0, 200.0] {
@@ -353,7 +353,7 @@ fn an_amplifier_that_switches_as_its_board_says_never_faults() {
     }
 }
 
-/// 1 ms, and the two ticks in which an edge of the enable shows.
+/// The limit is 1 ms, plus the two ticks after which the monitor shows an edge of the enable.
 #[test]
 fn an_output_that_stays_or_is_slow_faults_when_the_turn_off_time_is_over() {
     for decay in [
@@ -374,7 +374,7 @@ fn an_output_that_stays_or_is_slow_faults_when_the_turn_off_time_is_over() {
     }
 }
 
-/// The tick at which a check faults that reads `monitor_v` while `driven_v` is driven, of the next thousand.
+/// Ticks until a check faults that reads `monitor_v` while `driven_v` is driven; `None` if there is none within 1,000.
 fn ticks_to_fault(check: &mut MonitorCheck, driven_v: f32, monitor_v: f32) -> Option<u32> {
     (1..=1_000).find(|_| {
         let (comparison, must_count) = check.advance(code_of(driven_v), monitor_v);

@@ -55,7 +55,7 @@ fn buffer_before_wrap(before_wrap: u32) -> StreamBuffer {
     buffer
 }
 
-/// Samples that no two of are alike within a buffer's length.
+/// Samples that differ from each other within a buffer's length.
 fn sample(index: u32) -> u16 {
     (index.wrapping_mul(40_503) >> 3) as u16
 }
@@ -127,7 +127,7 @@ proptest! {
     }
 
     /// Under any sequence of calls: values and weights stay within bounds, weights never jump but to zero by `stop`,
-    /// and a stream is never worth a sample of another.
+    /// and a stream never plays a sample of another.
     #[test]
     fn any_order_of_calls_is_safe_and_never_stale(
         calls in prop::collection::vec((0..12_u8, any::<u32>(), 0..120_u32), 1..120),
@@ -344,7 +344,7 @@ fn holes_do_not_count_towards_the_start_level() {
     }
 }
 
-/// The holes that were played over do not count any more when the stream waits again.
+/// Skipped holes no longer count when the stream waits again.
 #[test]
 fn holes_that_were_played_over_do_not_delay_the_stream_again() {
     let buffer = StreamBuffer::new();
@@ -362,7 +362,7 @@ fn holes_that_were_played_over_do_not_delay_the_stream_again() {
     assert_eq!(ends.player.phase, Phase::Playing);
 }
 
-/// A start level that the holes leave no room for: the stream starts when its buffer takes no further frame.
+/// The holes leave no room for the start level: the stream starts when its buffer takes no further frame.
 #[test]
 fn a_buffer_without_room_starts_the_stream() {
     let buffer = StreamBuffer::new();

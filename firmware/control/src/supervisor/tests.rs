@@ -8,7 +8,7 @@ use super::Supervisor;
 use crate::{Board, Order, Sense};
 
 const BOARD: Board = Board::SIMULATOR;
-/// Of the simulated board, in V: 4 % of 250 V.
+/// Tolerance of the simulated board's monitor, V: 4 % of 250 V.
 const FLOOR_V: f32 = 10.0;
 const FULL_SCALE_V: f32 = 250.0;
 /// Wrong ticks that are a fault.
@@ -42,7 +42,7 @@ fn in_state(state: State) -> Supervisor {
     supervisor
 }
 
-/// An active supervisor, with `dac_code` on the amplifier for long.
+/// An active supervisor that has driven `dac_code` for a long time.
 fn driving(dac_code: i16) -> Supervisor {
     let mut supervisor = in_state(State::Active);
     supervisor.set_amplifier_enabled(true, DacCode::ZERO);
@@ -118,7 +118,7 @@ fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
     }
 }
 
-/// Independent of its duration.
+/// Holds for a fault of any duration.
 #[test]
 fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
     let mut supervisor = driving(0);
@@ -157,7 +157,7 @@ fn the_arm_switch_counts_only_while_it_has_to_be_held() {
     }
 }
 
-/// A ready line that is low in these ticks.
+/// The first of `ticks` ticks with a fault, for a ready line that is low in the ticks `low_at`.
 fn ready_low_at(supervisor: &mut Supervisor, ticks: u32, low_at: &[u32]) -> Option<u32> {
     (0..ticks).find(|tick| {
         supervisor.check(&Sense { amplifier_fault: low_at.contains(tick), ..reading(0.0) }, DacCode::ZERO);
@@ -228,7 +228,7 @@ fn ticks_to_silence(mut supervisor: Supervisor, heard_at_tick: u32, limit: u32) 
     })
 }
 
-/// A quarter of a second until a scene sets another, also where the tick counter wraps.
+/// The default is a quarter of a second. The timeout also holds across a wrap of the tick counter.
 #[test]
 fn a_silent_host_disarms_after_its_timeout() {
     for heard_at_tick in [0, 7, u32::MAX - 10_000, u32::MAX - 5, u32::MAX] {

@@ -56,8 +56,8 @@ impl<'a> Ticker<'a> {
         spare
     }
 
-    /// Swaps the scene, within the board's ceilings, and returns the previous coefficients. The new scene's voltage limit
-    /// applies at once.
+    /// Swaps the scene, within the board's ceilings, and returns the previous coefficients. The new scene's voltage
+    /// limit applies at once.
     #[inline]
     fn load(&mut self, next: &'a mut Active) -> &'a mut Active {
         self.is_clamped = next.limit_to(&self.ceilings);

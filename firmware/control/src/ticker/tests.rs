@@ -23,7 +23,7 @@ const TRACK: Track = Track {
     ramp: StandstillRamp::MOVING,
 };
 
-/// Coefficients of a constant that asks for more than any voltage gives, with a table up to 150 V rms.
+/// Coefficients of a constant out of reach of any voltage, with a table up to 150 V rms.
 fn active(carrier: CarrierTiming, slew_step_v: f32, voltage_max_v_rms: f32, host_timeout_ticks: u32) -> Active {
     let Header { finger_radius_m, stiffness_pa_per_m, friction_coefficient, .. } = HEADER;
     let finger = FingerModel { radius_m: finger_radius_m, stiffness_pa_per_m, friction_coefficient };

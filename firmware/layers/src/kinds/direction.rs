@@ -117,7 +117,7 @@ mod tests {
         assert!((part(-0.75, [0.0, -0.1])).abs() < 1e-6);
     }
 
-    /// A reversal passes through the mean of both, in steps in proportion to those of the velocity.
+    /// A reversal passes through the mean of both, in steps proportional to those of the velocity.
     #[test]
     fn a_slow_finger_feels_the_mean_of_both() {
         for (speed, expected) in [(0.0, 0.5), (1e-30, 0.5), (1e-4, 0.5025), (-1e-4, 0.4975), (0.01, 0.75), (0.02, 1.0)]

@@ -350,7 +350,7 @@ mod tests {
         let at = |tick: u32| 0.1 * TICK_S * tick as f32;
         let mut worst_m = 0.0_f32;
         for report in 0..40_u32 {
-            // The place is that of the right time, the tick that it is said to be of is not.
+            // The place is that of the actual time; the stated tick is wrong.
             let tick = 400 * report;
             let said = if report == 20 { tick + 396 } else { tick };
             take(&mut estimator, said, [at(tick), 0.0]);

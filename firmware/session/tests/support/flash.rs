@@ -1,4 +1,4 @@
-//! Flash that can lose its power at any byte of what it does.
+//! Simulated flash whose power can fail at any byte of an operation.
 
 use frixel_session::store::{Flash, Operation, WORD_LEN, WritableFlash};
 use frixel_testkit::Random;
@@ -26,7 +26,7 @@ pub struct SimulatedFlash {
     busy: u32,
     pub operations: Operations,
     failed: bool,
-    /// What a torn word reads as: nothing, or something.
+    /// Whether torn words can be read.
     torn_words_read: bool,
     noise: Random,
 }
@@ -94,7 +94,7 @@ impl WritableFlash for SimulatedFlash {
                 if at == start {
                     return;
                 }
-                // What is left of the page is anything between what it was and erased.
+                // The page has any content between the former one and erased.
                 for at in start..start + PAGE_LEN {
                     self.bytes[at] |= self.noise.byte();
                     self.torn[at / WORD_LEN] = true;

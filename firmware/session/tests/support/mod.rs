@@ -31,9 +31,9 @@ pub const COMMIT_POLLS_MAX: u32 = 128;
 pub struct TestBoard {
     pub session: Session<'static>,
     pub ticker: Ticker<'static>,
-    /// What the board sees when a test says nothing else: switch held, and a monitor that reads right.
+    /// The board's default inputs: a held switch, and a monitor that reads right.
     pub sense: Sense,
-    /// A report of the board's touch source, which the next tick uses up.
+    /// A report of the board's touch source, which the next tick consumes.
     pub touch: Option<Touch>,
     pub messages: Vec<FromBoard>,
     pub hello: Option<Hello>,
@@ -232,7 +232,7 @@ impl TestBoard {
         self.command(Command::Play).unwrap();
     }
 
-    /// Takes what the board has to say, while the host [reads](Self::reads).
+    /// Takes the bytes that the board sends, while the host [reads](Self::reads).
     pub fn collect(&mut self) {
         if !self.reads {
             return;

@@ -1,42 +1,43 @@
-//! The friction of a scene file as a formula of the place, from the words of `docs/design/scenes.md`: mm, mN, `f64`.
+//! The friction of a scene file as a formula of the place, from the definitions in `docs/design/scenes.md`: mm, mN,
+//! `f64`.
 
 use core::f64::consts::TAU;
 
 /// A scene file, and its electric friction.
 pub struct Formula {
-    /// What it is.
+    /// Name of the formula.
     pub name: &'static str,
-    /// Its layers, on the example screen.
+    /// The layers of the scene file, on the example screen.
     pub words: &'static str,
     /// Ends of the stroke on which the friction is compared, mm.
     pub stroke_mm: [(f64, f64); 2],
     /// Electric friction at a place in mm, mN.
     pub friction_mn: fn(f64, f64) -> f64,
-    /// It jumps, so that places that round may lie on the other side.
+    /// Whether the friction jumps, so that a rounded place may lie on the other side.
     pub jumps: bool,
-    /// How far what is felt may be away, as a part of the reachable range: a fifth above what was measured.
+    /// Tolerance of the felt friction, as a part of the reachable range: a fifth above the measured deviation.
     pub bound: f64,
 }
 
 /// From left to right, and a little down.
 pub(super) const ACROSS: [(f64, f64); 2] = [(5.0, 30.0), (115.0, 45.0)];
 
-/// Part of a turn, from 0 to 1, at so many turns.
+/// Fraction of a turn, from 0 to 1.
 pub fn turn(turns: f64) -> f64 {
     turns - turns.floor()
 }
 
-/// A sine between 0 and 1 at so many turns.
+/// A sine between 0 and 1 of an angle in turns.
 pub fn sine(turns: f64) -> f64 {
     0.5 + 0.5 * (TAU * turns).sin()
 }
 
-/// Where a place lies along a direction in degrees, from x towards y.
+/// Coordinate of a place along a direction in degrees, from x towards y.
 pub fn along_deg(x: f64, y: f64, degrees: f64) -> f64 {
     x * degrees.to_radians().cos() + y * degrees.to_radians().sin()
 }
 
-/// Noise between 0 and 1 as `PROTOCOL.md` has it: wavelengths in mm.
+/// Noise between 0 and 1, as defined in `PROTOCOL.md`; wavelengths in mm.
 pub fn noise(seed: u32, shortest: f64, longest: f64, x: f64, y: f64) -> f64 {
     let hash = |number: u32| {
         let mut v = seed.wrapping_add(number.wrapping_mul(0x9e37_79b9));

@@ -1,7 +1,7 @@
-//! A sample of each kind of layer: from these, tests and benchmarks make all that they need of every kind.
+//! Samples of each kind of layer, from which tests and benchmarks are generated.
 //!
-//! [`samples`] gives one for each kind. The tests of this crate hold the bytes of its records, and find the kinds that
-//! have none.
+//! [`samples`] returns one for each kind. The tests of this crate compare the bytes of its records, and find the kinds
+//! without a sample.
 #![allow(clippy::single_range_in_vec_init, reason = "most kinds use one range of bytes")]
 
 #[cfg(feature = "std")]
@@ -19,7 +19,7 @@ use crate::random::Random;
 #[cfg(feature = "std")]
 pub use formula::{Formula, along_deg, noise, sine, turn};
 
-/// What tests and benchmarks need of a kind of layer.
+/// The data of a kind of layer for tests and benchmarks.
 pub struct Sample {
     /// A layer of each form of the kind.
     pub records: &'static [SampleRecord],
@@ -51,7 +51,7 @@ pub struct CostCase {
     pub layer: Layer,
 }
 
-/// The name of the picture in the samples: [`with_picture`] puts in that of another.
+/// The name of the picture in the samples; [`with_picture`] replaces it.
 pub const PICTURE: u32 = 0xcbf4_3926;
 
 /// The points that the samples refer to: a curve of two points, and a triangle of three.
@@ -95,7 +95,7 @@ const fn cost(name: &'static str, layer: Layer) -> CostCase {
     CostCase { name, region: AROUND, layer }
 }
 
-/// What a random layer is drawn from.
+/// The inputs for drawing a random layer.
 pub struct Draw<'a> {
     /// The random numbers.
     pub random: &'a mut Random,
@@ -124,7 +124,7 @@ impl Draw<'_> {
         self.random.pick([Wave::Sine, Wave::Square { duty: 0.3 }, Wave::Triangle, Wave::Saw])
     }
 
-    /// Waves a second that pass a place; every other one stands still.
+    /// Waves per second that pass a place; 0 with a probability of one half.
     pub fn drift_hz(&mut self) -> f32 {
         let moving = self.random.between(-50.0, 50.0);
         self.random.pick([0.0, moving])

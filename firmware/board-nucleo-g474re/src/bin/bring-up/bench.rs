@@ -1,4 +1,4 @@
-//! This board and the person in front of it, as the script of bring-up sees them.
+//! The interface of the bring-up script to this board and to the person operating it.
 
 use core::fmt::Arguments;
 
@@ -40,12 +40,12 @@ pub(crate) enum Stage {
     Still(Still),
     /// The tick.
     Ticking(MainLoop<Nucleo>),
-    /// Nobody, between the two.
+    /// Transition between the two.
     Neither,
 }
 
 impl NucleoBench {
-    /// A round of what has to go on while the script waits.
+    /// Does one round of background work while the script waits.
     pub(crate) fn turn(&mut self, output: TestOutput) {
         match &mut self.stage {
             Stage::Still(still) => still.next_period(output),
@@ -69,7 +69,7 @@ impl NucleoBench {
         match self.injection {
             Injection::Passed => true,
             Injection::NotStored(fault) => {
-                self.terminal.say(format_args!("{fault}: it was injected, and not stored as the reason of the reset"));
+                self.terminal.say(format_args!("{fault}: injected, but not stored as the reason of the reset"));
                 false
             }
             Injection::NotBegun | Injection::Next(_) => {
@@ -155,7 +155,7 @@ impl Bench for NucleoBench {
     fn may_store(&mut self, limits: &BoardLimits) -> bool {
         let written = limits::written(limits);
         if let Err(error) = &written {
-            self.terminal.say(format_args!("Of the limits: {error}."));
+            self.terminal.say(format_args!("Limits: {error}."));
         }
         written.is_ok()
     }

@@ -8,14 +8,14 @@ use frixel_board::fault::LastReset;
 use frixel_cortex_m::outlasting;
 use frixel_wire::fault::Fault;
 
-/// Marks the memory below as valid; the number of injected faults stands in its lowest byte.
+/// Marks the memory below as valid; the number of injected faults is in its lowest byte.
 const MARK: u32 = 0x7072_6f00;
 
 /// Kept over a reset: [`MARK`] and the number of injected faults.
 #[unsafe(link_section = ".uninit.INJECTED")]
 static INJECTED: AtomicU32 = AtomicU32::new(0);
 
-/// What follows the last reset. Called once.
+/// Progress of the fault injection after the last reset. Called once.
 pub(crate) fn after(last_reset: &LastReset) -> Injection {
     let kept = outlasting(&INJECTED).swap(0, Ordering::Relaxed);
     let injected = if kept & !0xff == MARK { (kept & 0xff) as usize } else { 0 };

@@ -6,8 +6,7 @@ use frixel_board::start::LIMITS_SLOT;
 use frixel_session::store::{LIMITS_LEN, LimitsError, Writer, Writing, load_limits, write_limits};
 use frixel_wire::hello::BoardLimits;
 
-/// The limits of `src/board.rs`, with what the environment of the build says instead. `None` if something there is not
-/// a number.
+/// The limits of `src/board.rs`, with overrides from the build's environment; `None` if one is not a number.
 pub(crate) fn built_in() -> Option<BoardLimits> {
     let number = |text: Option<&str>, unit: f32, default: f32| match text {
         None => Some(default),
@@ -28,13 +27,13 @@ pub(crate) fn built_in() -> Option<BoardLimits> {
     })
 }
 
-/// Limits as they are stored, if they are within what this board may store.
+/// Encodes limits for storage. Refuses limits that this board must not store.
 pub(crate) fn written(limits: &BoardLimits) -> Result<[u8; LIMITS_LEN], LimitsError> {
     write_limits(limits, CEILINGS)
 }
 
-/// Stores limits in both copies and reads them back, so that no earlier limits are left to fall back on. `goes_on` is called again and again meanwhile, and returns `false` to give up a
-/// flash that never ends an operation. `false` if that failed.
+/// Stores limits in both copies and reads them back, so that no earlier limits remain; `false` if that failed.
+/// `goes_on` is called repeatedly meanwhile; it returns `false` to give up on a flash that never ends an operation.
 pub(crate) fn store(flash: &mut BankTwo, limits: &BoardLimits, mut goes_on: impl FnMut() -> bool) -> bool {
     let Ok(bytes) = written(limits) else { return false };
     for _ in 0..2 {

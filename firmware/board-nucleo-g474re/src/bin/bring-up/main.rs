@@ -1,6 +1,6 @@
 //! Brings up a new board, step by step: `cargo run --release --bin bring-up`, described in `docs/board/hardware.md`.
-//! The script is `frixel_board::bring_up`; here is what it needs of this board. The person types at a terminal on the
-//! ST-Link's serial port, at 2 Mbaud.
+//! The script is `frixel_board::bring_up`; this program implements its interface to the board. The person types at a
+//! terminal on the ST-Link's serial port, at 2 Mbaud.
 #![no_std]
 #![no_main]
 
@@ -79,7 +79,7 @@ fn main() -> ! {
             output::zero_for_good();
             bench
                 .terminal
-                .say(format_args!("STOP. {stop}. Switch the amplifier's supply off, mend it, reset the board."));
+                .say(format_args!("STOP. {stop}. Switch the amplifier's supply off, fix it, reset the board."));
         }
     }
     // The watchdog may run.

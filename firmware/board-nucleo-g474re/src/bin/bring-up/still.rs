@@ -1,6 +1,6 @@
-//! The board before the tick runs: kicks the one-shot, and sends codes to the DAC by itself. No voltage: while the DAC
-//! puts out a code, the amplifier is disabled. Only the tests of the one-shot and of what is behind it enable it, with
-//! the DAC at zero.
+//! The board before the tick runs: kicks the one-shot, and sends codes to the DAC. There is no high voltage: the
+//! amplifier is disabled while the DAC outputs a code. Only the tests of the one-shot and of the enable path enable it,
+//! with the DAC at zero.
 
 use board_nucleo_g474re::board::TICK_HZ;
 use board_nucleo_g474re::clock::CORE_HZ;
@@ -26,7 +26,7 @@ const OFF_WITHIN_US: u32 = 1000;
 /// Periods in 2 ms.
 const PERIODS_PER_2_MS: u32 = TICK_HZ / 500;
 
-/// What the tick takes over when it starts.
+/// The parts that the tick takes over when it starts.
 pub(crate) struct Still {
     pub(crate) boot: Boot,
     pub(crate) period: Period,
@@ -39,7 +39,7 @@ pub(crate) struct Still {
 }
 
 impl Still {
-    /// Waits for the next period, and puts `output` out at its end; zero as long as the amplifier is ready.
+    /// Waits for the next period, and outputs `output` at its end, or zero while the amplifier is ready.
     pub(crate) fn next_period(&mut self, output: TestOutput) {
         watchdog::feed();
         self.period.wait_for_next();
@@ -51,7 +51,7 @@ impl Still {
         }
     }
 
-    /// Lets SYNC rise in this period, if it is to, with a frame of zero. `false` if that failed.
+    /// Raises SYNC in this period if it is due, with a frame of zero. Returns `false` if that failed.
     fn sync(&mut self, sync: Sync) -> bool {
         self.periods = (self.periods + 1) % PERIODS_PER_2_MS;
         let rises = match sync {

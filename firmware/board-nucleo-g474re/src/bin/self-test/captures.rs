@@ -1,5 +1,6 @@
-//! What the wires of the self-test end in: TIM1 counts the clocks at SCLK, and captures SYNC; TIM2 captures the enable;
-//! DAC1 drives the monitor's input (RM0440, "General-purpose timers": "Input capture mode", "External clock mode 1").
+//! Inputs and outputs at the ends of the self-test's wires: TIM1 counts the clocks at SCLK, and captures SYNC; TIM2
+//! captures the enable; DAC1 drives the monitor's input (RM0440, "General-purpose timers": "Input capture mode",
+//! "External clock mode 1").
 //!
 //! | pin | function | wire |
 //! |---|---|---|
@@ -29,7 +30,7 @@ const MONITOR: u32 = 0;
 /// Supply of ADC and DAC, mV, and their largest code.
 const SUPPLY_MV: u32 = 3_300;
 const CODE_MAX: u32 = 4_095;
-/// Conversions of which the mean is taken, and the time between two of them: the ADC takes 2.5 us for one.
+/// Number of averaged conversions, and time between two of them, us. The ADC takes 2.5 us for one.
 const CONVERSIONS: u32 = 64;
 const CONVERSION_US: u32 = 5;
 /// Time for the DAC's buffer and the wire to settle (DS12288, "DAC characteristics": 3 us at most).
@@ -141,7 +142,7 @@ impl Captures {
         Some((captured + PERIOD_CYCLES - ahead()) % PERIOD_CYCLES)
     }
 
-    /// Forgets what was captured of the enable, and returns the time, in cycles.
+    /// Discards the captured edges of the enable, and returns the time, in cycles.
     pub(crate) fn forget_edges(&mut self) -> u32 {
         TIM2.sr().write(|w| w.0 = 0);
         Self::now()
@@ -152,12 +153,12 @@ impl Captures {
         TIM2.cnt().read()
     }
 
-    /// When the enable has risen first, in cycles, since this was called last.
+    /// The cycle at which the enable rose since the last call; `None` if it did not.
     pub(crate) fn enable_rose(&mut self) -> Option<u32> {
         TIM2.sr().read().ccif(ENABLE_ROSE).then(|| TIM2.ccr(ENABLE_ROSE).read())
     }
 
-    /// The last fall of the enable since this was called last.
+    /// The last fall of the enable since the last call; `None` if it did not fall.
     pub(crate) fn enable_fell(&mut self) -> Option<Fall> {
         let status = TIM2.sr().read();
         status
@@ -181,8 +182,8 @@ impl Captures {
     }
 }
 
-/// Cycles by which TIM1 is ahead of the tick's period. Both have its length, so that it stays; the middle of two reads
-/// is taken, because a read takes some cycles.
+/// Cycles by which TIM1 is ahead of the tick's period. Both have the same length, so the lead is constant. TIM1 is
+/// compared with the midpoint of two reads of the period, because a read takes some cycles.
 fn ahead() -> u32 {
     cortex_m::interrupt::free(|_| {
         let before = period::cycles();

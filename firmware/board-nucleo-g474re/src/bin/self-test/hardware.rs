@@ -1,4 +1,4 @@
-//! The parts of the tick and the main loop in the self-test: those of this board, but for what could drive anything.
+//! The parts of tick and main loop in the self-test: the board's own, except those that could drive anything.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +12,7 @@ use frixel_drivers::amplifier::KickedEnable;
 use frixel_drivers::pin::{DirectPin, ReadLevel};
 use frixel_wire::dac_code::DacCode;
 
-/// What the tick takes for the contact of the arm switch.
+/// Simulated contact of the arm switch, as the tick reads it.
 pub(crate) static SWITCH_HELD: AtomicBool = AtomicBool::new(false);
 
 /// The parts.
@@ -33,7 +33,7 @@ impl Hardware for Wired {
     type Watchdog = Watchdog;
 }
 
-/// Frames as the tick sends them, but for their code, which is zero.
+/// The tick's frames, with their code replaced by zero.
 pub(crate) struct ZeroFrames(pub(crate) Frames);
 
 impl DacFrames for ZeroFrames {
@@ -43,7 +43,7 @@ impl DacFrames for ZeroFrames {
     }
 }
 
-/// No enable: the one-shot rests, whatever the tick does.
+/// Placeholder for the enable: the one-shot stays at rest, whatever the tick does.
 pub(crate) struct NoEnable;
 
 impl KickedEnable for NoEnable {
@@ -54,7 +54,7 @@ impl KickedEnable for NoEnable {
     fn disable(&mut self) {}
 }
 
-/// A DAC that is always in order, because there is none.
+/// Placeholder for the DAC, which passes every check.
 pub(crate) struct NoDac;
 
 impl Dac for NoDac {
@@ -67,7 +67,7 @@ impl Dac for NoDac {
     }
 }
 
-/// The ready line of an amplifier that is not there.
+/// Ready line without an amplifier, always high.
 pub(crate) struct AlwaysHigh;
 
 impl ReadLevel for AlwaysHigh {

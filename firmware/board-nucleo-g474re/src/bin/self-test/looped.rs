@@ -1,4 +1,4 @@
-//! This board with its wires, as the script of the self-test sees it.
+//! The interface of the self-test script to this board and its wires.
 
 use core::fmt::Arguments;
 use core::mem;
@@ -38,7 +38,7 @@ pub(crate) enum Stage {
     Still(Still),
     /// The tick. The captures go on.
     Ticking(MainLoop<Wired>, Captures),
-    /// Nobody, between the two.
+    /// Transition between the two.
     Neither,
 }
 
@@ -70,7 +70,7 @@ impl Still {
 }
 
 impl Looped {
-    /// A round of what has to go on, with the arm switch as the tick is to see it.
+    /// Does one round of background work. `held` is the level of the arm switch for the tick.
     pub(crate) fn turn(&mut self, held: bool) {
         match &mut self.stage {
             Stage::Still(_) | Stage::Neither => watchdog::feed(),

@@ -1,7 +1,7 @@
 //! Measures a new board with wires between its own pins, without DAC, amplifier and voltage: `cargo run --release --bin
-//! self-test`, described in `docs/board/first-board.md`. The script is `frixel_board::self_test`; here is what it needs
-//! of this board. `frixel board selftest --wires` answers it on the ST-Link's serial port, at 2 Mbaud, or a person at a
-//! terminal.
+//! self-test`, described in `docs/board/first-board.md`. The script is `frixel_board::self_test`; this program
+//! implements its interface to the board. `frixel board selftest --wires` answers it on the ST-Link's serial port, at 2
+//! Mbaud, or a person at a terminal.
 #![no_std]
 #![no_main]
 
