@@ -119,6 +119,35 @@ fn coefficients_at_the_ceilings_are_kept_and_not_flagged() {
     }
 }
 
+#[test]
+fn each_coefficient_above_its_ceiling_is_lowered() {
+    let ceilings = BOARD.ceilings();
+    let timing = |code| CarrierTiming::new(Waveform::Square, 4, 100.0, ceilings.code(code));
+    let voltage_v = ceilings.voltage_max_v_peak(4);
+    let (carrier, above) = (timing(voltage_v), timing(1.01 * voltage_v));
+    for (timing, slew_step_v, voltage_max_v_rms, host_timeout_ticks) in [
+        (above, 1.0, voltage_v, BOARD.tick_hz),
+        (carrier, f32::NAN, voltage_v, BOARD.tick_hz),
+        (carrier, 1.0, 1.01 * voltage_v, BOARD.tick_hz),
+        (carrier, 1.0, voltage_v, BOARD.tick_hz + 1),
+    ] {
+        let mut one_above = active(timing, slew_step_v, voltage_max_v_rms, host_timeout_ticks);
+        assert!(one_above.limit_to(&ceilings));
+        assert!(!one_above.limit_to(&ceilings), "it was lowered once");
+        assert_eq!((one_above.carrier, one_above.host_timeout_ticks), (carrier, BOARD.tick_hz));
+        assert!(one_above.voltage_max_v_rms <= voltage_v && one_above.slew_step_v <= 1.0);
+    }
+}
+
+#[test]
+fn an_unloaded_scene_leaves_nothing() {
+    let carrier = CarrierTiming::new(Waveform::Square, 4, 100.0, DacCode::MAX);
+    let mut unloaded = active(carrier, 1.0, 50.0, 100);
+    unloaded.unload();
+    assert!(unloaded.table().is_none() && unloaded.carrier == CarrierTiming::ZERO_OUTPUT);
+    assert_eq!((unloaded.slew_step_v, unloaded.voltage_max_v_rms, unloaded.host_timeout_ticks), (0.0, 0.0, 0));
+}
+
 /// An arbitrary number, as in unchecked memory.
 fn any_number() -> impl Strategy<Value = f32> {
     prop_oneof![any::<f32>(), -10.0_f32..1e4, Just(f32::NAN), Just(f32::INFINITY), Just(f32::MAX)]
