@@ -28,7 +28,7 @@ use frixel_board::fault::LastReset;
 use frixel_board::memory::{BoardParts, Memory};
 use frixel_board::start::Parts;
 use frixel_control::Board;
-use frixel_cortex_m::{Boot, guard, never};
+use frixel_cortex_m::{Boot, guard, unreachable_state};
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::pin::DirectPin;
 use frixel_drivers::serial::SerialLink;
@@ -63,7 +63,7 @@ fn main() -> ! {
 
 /// Starts the tick on the board's own timer, and runs the main loop with the host on the serial port.
 fn run(made: BoardParts, boot: Boot, mut peripherals: Peripherals) -> ! {
-    let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { never() };
+    let Some(bytes) = singleton!(: uart::Queues = uart::Queues::new()) else { unreachable_state() };
     let parts = Parts {
         period: Period::default(),
         frames: Frames,

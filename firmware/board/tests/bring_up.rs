@@ -51,7 +51,7 @@ enum Ending {
 
 /// A defect of the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Odd {
+enum Defect {
     /// Ready and switch are connected with each other.
     Bridged,
     /// The amplifier never gets ready.
@@ -72,7 +72,7 @@ struct TestBench {
     wrong_drive: Option<(u32, Result<Reading, DriveError>)>,
     /// Number of the call of the bench that resets the board.
     reset_at_call: Option<u32>,
-    odd: Option<Odd>,
+    defect: Option<Defect>,
     enable_path: EnablePath,
 
     calls: u32,
@@ -103,7 +103,7 @@ impl TestBench {
             wrong_check: None,
             wrong_drive: None,
             reset_at_call: None,
-            odd: None,
+            defect: None,
             enable_path: EnablePath::Right,
             calls: 0,
             polls: 0,
@@ -172,13 +172,13 @@ impl TestBench {
     /// Follows the board's last instruction, as the person.
     fn act(&mut self) {
         if let Some(ready) = person::ready_after(&self.said) {
-            self.inputs.amplifier_ready = ready && self.odd != Some(Odd::NeverReady);
+            self.inputs.amplifier_ready = ready && self.defect != Some(Defect::NeverReady);
         }
         if let Some(closed) = person::contact_after(&self.said) {
             self.inputs.switch_closed = closed;
         }
         if self.said.contains("Release the switch, then hold it") {
-            self.held = self.odd == Some(Odd::Taped);
+            self.held = self.defect == Some(Defect::Taped);
         }
     }
 
@@ -229,10 +229,10 @@ impl Bench for TestBench {
     fn inputs(&mut self) -> Inputs {
         self.poll();
         self.events.push(Event::Contact(self.inputs.switch_closed));
-        let bounce = self.odd == Some(Odd::Bouncing) && self.polls.is_multiple_of(2);
+        let bounce = self.defect == Some(Defect::Bouncing) && self.polls.is_multiple_of(2);
         let switch_closed = self.inputs.switch_closed ^ (bounce && self.said.contains("the switch."));
         let both = self.inputs.amplifier_ready || switch_closed;
-        if self.odd == Some(Odd::Bridged) {
+        if self.defect == Some(Defect::Bridged) {
             Inputs { amplifier_ready: both, switch_closed: both }
         } else {
             Inputs { switch_closed, ..self.inputs }
@@ -245,7 +245,7 @@ impl Bench for TestBench {
         let held = self.held && !self.used_up;
         self.used_up &= self.held;
         self.events.push(Event::Held(held));
-        self.held = !held || self.odd == Some(Odd::Taped);
+        self.held = !held || self.defect == Some(Defect::Taped);
         held
     }
 
@@ -307,7 +307,7 @@ fn a_good_board_is_driven_up_to_its_limit_and_its_measured_limits_are_stored() {
 
 #[test]
 fn a_bouncing_contact_is_no_wrong_input() {
-    let mut bench = TestBench { odd: Some(Odd::Bouncing), ..TestBench::new() };
+    let mut bench = TestBench { defect: Some(Defect::Bouncing), ..TestBench::new() };
     assert!(bench.bring_up().unwrap().is_ok());
 }
 
@@ -454,12 +454,12 @@ fn every_voltage_follows_a_release_and_a_press() {
 /// The script waits for a switch that is not released and an amplifier that is not ready. Touching wires end it.
 #[test]
 fn odd_inputs_drive_nothing() {
-    for (odd, ends) in [(Odd::Taped, false), (Odd::NeverReady, false), (Odd::Bridged, true)] {
-        let mut bench = TestBench { odd: Some(odd), ..TestBench::new() };
+    for (defect, ends) in [(Defect::Taped, false), (Defect::NeverReady, false), (Defect::Bridged, true)] {
+        let mut bench = TestBench { defect: Some(defect), ..TestBench::new() };
         let end = bench.bring_up();
-        assert_eq!(matches!(end, Some(Err(Stop::Inputs { .. }))), ends, "{odd:?}: {end:?}");
-        assert_eq!(end.is_none(), !ends, "{odd:?}: {end:?}");
-        assert!(bench.driven().is_empty(), "{odd:?}");
+        assert_eq!(matches!(end, Some(Err(Stop::Inputs { .. }))), ends, "{defect:?}: {end:?}");
+        assert_eq!(end.is_none(), !ends, "{defect:?}: {end:?}");
+        assert!(bench.driven().is_empty(), "{defect:?}");
     }
 }
 

@@ -143,10 +143,10 @@ fn a_panic_and_an_unhandled_interrupt_say_where() {
 #[test]
 fn a_start_learns_of_a_fault_once() {
     let record = FaultRecord::new();
-    assert!(!record.has_outlasted_reset(), "power-on");
+    assert!(!record.survived_reset(), "power-on");
     let first = next_start(&record, ResetCause::PowerOn);
     assert_eq!((first.cause, first.fault, first.text), (ResetCause::PowerOn, None, &b""[..]));
-    assert!(record.has_outlasted_reset());
+    assert!(record.survived_reset());
     record.save(Fault::Panic, 9, &mut |_| ());
     assert_eq!(next_start(&record, ResetCause::Software).fault, Some((Fault::Panic, 9)));
     assert_eq!(next_start(&record, ResetCause::Software).fault, None);

@@ -67,7 +67,7 @@ fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
 
 /// Calls of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Told {
+enum PortCall {
     TakeClock,
     GiveClock,
     Stop,
@@ -77,7 +77,7 @@ enum Told {
 
 /// A port with scripted answers.
 struct Port {
-    told: RefCell<Vec<Told>>,
+    calls: RefCell<Vec<PortCall>>,
     /// Rising edges of SCL until SDA is high.
     held_for: Cell<u32>,
     /// Polls until it has stopped.
@@ -90,7 +90,7 @@ type Handle = &'static Port;
 /// A port that is free, stops at once, and transfers at once.
 fn port() -> Handle {
     Box::leak(Box::new(Port {
-        told: RefCell::default(),
+        calls: RefCell::default(),
         held_for: Cell::new(0),
         stops_after: Cell::new(0),
         result: Cell::new(Poll::Ready(Ok(()))),
@@ -131,16 +131,16 @@ impl I2cPort for Handle {
     }
 
     fn take_clock(&mut self) -> DirectPin<Clock> {
-        self.told.borrow_mut().push(Told::TakeClock);
+        self.calls.borrow_mut().push(PortCall::TakeClock);
         DirectPin(Clock(self))
     }
 
     fn give_clock(&mut self) {
-        self.told.borrow_mut().push(Told::GiveClock);
+        self.calls.borrow_mut().push(PortCall::GiveClock);
     }
 
     fn stop(&mut self) {
-        self.told.borrow_mut().push(Told::Stop);
+        self.calls.borrow_mut().push(PortCall::Stop);
     }
 
     fn has_stopped(&mut self) -> bool {
@@ -152,7 +152,7 @@ impl I2cPort for Handle {
             Operation::Read(bytes) => bytes.len(),
             Operation::Write(bytes) => bytes.len(),
         };
-        self.told.borrow_mut().push(Told::Begin(address, len));
+        self.calls.borrow_mut().push(PortCall::Begin(address, len));
     }
 
     fn poll(&mut self, operation: &mut Operation<'_>) -> Poll<Result<(), BusError>> {
@@ -163,18 +163,18 @@ impl I2cPort for Handle {
     }
 
     fn give_up(&mut self) {
-        self.told.borrow_mut().push(Told::GiveUp);
+        self.calls.borrow_mut().push(PortCall::GiveUp);
     }
 }
 
 /// Runs a transaction on a ticking board. Returns its result, the calls of the port, and its duration in ticks.
-fn transaction(port: Handle, operations: &mut [Operation<'_>]) -> (Result<(), BusError>, Vec<Told>, u32) {
+fn transaction(port: Handle, operations: &mut [Operation<'_>]) -> (Result<(), BusError>, Vec<PortCall>, u32) {
     let board = Board::new();
     let mut bus = FrameBus::new(port, TickTime { shared: board.shared, tick_hz: TICK_HZ });
     let mut future = pin!(bus.transaction(0x50, operations));
     for ticks in 0..TICK_HZ {
         if let Poll::Ready(result) = poll_once(future.as_mut()) {
-            return (result, port.told.take(), ticks);
+            return (result, port.calls.take(), ticks);
         }
         run_tick();
     }
@@ -184,8 +184,8 @@ fn transaction(port: Handle, operations: &mut [Operation<'_>]) -> (Result<(), Bu
 #[test]
 fn a_transfer_stops_the_peripheral_before_and_after() {
     let mut bytes = [0; 3];
-    let told = vec![Told::Stop, Told::Begin(0x50, 3), Told::Stop];
-    assert_eq!(transaction(port(), &mut [Operation::Read(&mut bytes)]), (Ok(()), told, 0));
+    let calls = vec![PortCall::Stop, PortCall::Begin(0x50, 3), PortCall::Stop];
+    assert_eq!(transaction(port(), &mut [Operation::Read(&mut bytes)]), (Ok(()), calls, 0));
     assert_eq!(bytes, [7; 3]);
 }
 
@@ -204,9 +204,9 @@ fn what_the_module_never_needs_is_refused_untold() {
 fn a_transfer_that_does_not_end_is_given_up_in_time() {
     let port = port();
     port.result.set(Poll::Pending);
-    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    let (result, calls, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
     assert_eq!(result, Err(BusError::Timeout));
-    assert_eq!(told, [Told::Stop, Told::Begin(0x50, 1), Told::GiveUp, Told::Stop]);
+    assert_eq!(calls, [PortCall::Stop, PortCall::Begin(0x50, 1), PortCall::GiveUp, PortCall::Stop]);
     assert_eq!(ticks, TICK_HZ * 6 / 1000 + 1);
 }
 
@@ -215,8 +215,8 @@ fn a_transfer_that_fails_is_given_up_with_its_error() {
     for error in [BusError::NoAcknowledge, BusError::ArbitrationLoss] {
         let port = port();
         port.result.set(Poll::Ready(Err(error)));
-        let told = vec![Told::Stop, Told::Begin(0x50, 1), Told::GiveUp, Told::Stop];
-        assert_eq!(transaction(port, &mut [Operation::Write(&[1])]), (Err(error), told, 0));
+        let calls = vec![PortCall::Stop, PortCall::Begin(0x50, 1), PortCall::GiveUp, PortCall::Stop];
+        assert_eq!(transaction(port, &mut [Operation::Write(&[1])]), (Err(error), calls, 0));
     }
 }
 
@@ -224,13 +224,16 @@ fn a_transfer_that_fails_is_given_up_with_its_error() {
 fn a_bus_that_is_held_is_cleared_before_the_transfer() {
     let port = port();
     port.held_for.set(9);
-    let (result, told, _) = transaction(port, &mut [Operation::Write(&[1])]);
+    let (result, calls, _) = transaction(port, &mut [Operation::Write(&[1])]);
     assert_eq!(result, Ok(()));
-    assert_eq!(told, [Told::TakeClock, Told::GiveClock, Told::Stop, Told::Begin(0x50, 1), Told::Stop]);
+    assert_eq!(
+        calls,
+        [PortCall::TakeClock, PortCall::GiveClock, PortCall::Stop, PortCall::Begin(0x50, 1), PortCall::Stop]
+    );
     port.held_for.set(10);
-    let (result, told, _) = transaction(port, &mut [Operation::Write(&[1])]);
+    let (result, calls, _) = transaction(port, &mut [Operation::Write(&[1])]);
     assert_eq!(result, Err(BusError::BusHeld), "nine clocks do not free it");
-    assert_eq!(told, [Told::TakeClock, Told::GiveClock]);
+    assert_eq!(calls, [PortCall::TakeClock, PortCall::GiveClock]);
 }
 
 /// A peripheral that still waits for the end of the last transfer ignores configuration.
@@ -238,10 +241,10 @@ fn a_bus_that_is_held_is_cleared_before_the_transfer() {
 fn a_peripheral_that_does_not_stop_is_not_begun() {
     let port = port();
     port.stops_after.set(10);
-    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    let (result, calls, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
     assert_eq!((result, ticks), (Ok(()), 10));
-    assert_eq!(told, [Told::Stop, Told::Begin(0x50, 1), Told::Stop]);
+    assert_eq!(calls, [PortCall::Stop, PortCall::Begin(0x50, 1), PortCall::Stop]);
     port.stops_after.set(u32::MAX);
-    let (result, told, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
-    assert_eq!((result, told, ticks), (Err(BusError::BusHeld), vec![Told::Stop], TICK_HZ / 1000 + 1));
+    let (result, calls, ticks) = transaction(port, &mut [Operation::Write(&[1])]);
+    assert_eq!((result, calls, ticks), (Err(BusError::BusHeld), vec![PortCall::Stop], TICK_HZ / 1000 + 1));
 }

@@ -23,12 +23,12 @@ const TICKS_MAX: u32 = 120 * 40_000;
 
 /// The person's next action at the switch, and its time.
 #[derive(Clone, Copy)]
-enum Hand {
+enum SwitchAction {
     Releases { at_tick: u32 },
     Presses { at_tick: u32 },
 }
 
-impl Hand {
+impl SwitchAction {
     fn holds(self, tick: u32) -> bool {
         match self {
             Self::Releases { at_tick } => tick < at_tick,
@@ -43,7 +43,7 @@ struct WholeBench {
     status: Status,
     said: String,
     inputs: Inputs,
-    hand: Hand,
+    action: SwitchAction,
     ticks: u32,
     driven_v: f32,
     /// Ticks with an enabled amplifier.
@@ -59,7 +59,7 @@ impl WholeBench {
             firmware,
             said: String::new(),
             inputs: Inputs { amplifier_ready: false, switch_closed: false },
-            hand: Hand::Releases { at_tick: 0 },
+            action: SwitchAction::Releases { at_tick: 0 },
             ticks: 0,
             driven_v: 0.0,
             enabled_ticks: 0,
@@ -79,7 +79,7 @@ impl WholeBench {
             let sense = Sense {
                 amplifier_fault: !self.inputs.amplifier_ready,
                 monitor_v: self.monitor_v(),
-                arm_switch: self.hand.holds(self.ticks),
+                arm_switch: self.action.holds(self.ticks),
             };
             self.enabled_ticks += u32::from(self.firmware.tick(&sense).amplifier_enable);
         }
@@ -94,7 +94,7 @@ impl Bench for WholeBench {
         self.inputs.amplifier_ready = person::ready_after(&self.said).unwrap_or(self.inputs.amplifier_ready);
         self.inputs.switch_closed = person::contact_after(&self.said).unwrap_or(self.inputs.switch_closed);
         if self.said.contains("Release the switch, then hold it") {
-            self.hand = Hand::Releases { at_tick: self.ticks + LATE_TICKS };
+            self.action = SwitchAction::Releases { at_tick: self.ticks + LATE_TICKS };
         }
     }
 
@@ -124,10 +124,10 @@ impl Bench for WholeBench {
 
     fn switch_is_held(&mut self) -> bool {
         self.turn();
-        if let Hand::Releases { at_tick } = self.hand
+        if let SwitchAction::Releases { at_tick } = self.action
             && self.ticks >= at_tick
         {
-            self.hand = Hand::Presses { at_tick: self.ticks + LATE_TICKS };
+            self.action = SwitchAction::Presses { at_tick: self.ticks + LATE_TICKS };
         }
         self.status.arm_switch
     }

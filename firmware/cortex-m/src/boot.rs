@@ -14,13 +14,13 @@ impl Boot {
     pub fn take() -> (Self, Peripherals) {
         match Peripherals::take() {
             Some(peripherals) => (Self(()), peripherals),
-            None => never(),
+            None => unreachable_state(),
         }
     }
 }
 
 /// Panics if a static would be taken twice, which cannot happen. A panic sets the output to zero and resets.
 #[allow(clippy::panic, clippy::missing_panics_doc, reason = "there is nothing to go on with")]
-pub fn never() -> ! {
+pub fn unreachable_state() -> ! {
     panic!("a static was taken twice")
 }

@@ -6,7 +6,7 @@
 //! - [`fault_handlers!`]: the handlers of panics, hard faults and interrupts without a handler, and the record of the
 //!   last fault;
 //! - [`guard`]: turns a stack overflow into a fault;
-//! - [`outlasting`]: a place that the start-up code does not clear;
+//! - [`uninitialized`]: a place that the start-up code does not clear;
 //! - [`runs_from_ram!`]: an image that runs from RAM;
 //! - [`CycleDelay`]: waits by the core's clock.
 #![no_std]
@@ -19,8 +19,8 @@ mod owned;
 pub mod ram_image;
 mod tick_owner;
 
-pub use boot::{Boot, never};
+pub use boot::{Boot, unreachable_state};
 pub use delay::CycleDelay;
-pub use fault::outlasting;
+pub use fault::uninitialized;
 pub use owned::Owned;
 pub use tick_owner::TickOwner;

@@ -45,7 +45,7 @@ impl FaultRecord {
     }
 
     /// Whether the record's memory has kept its content since an earlier start. Call this before this start marks it.
-    pub fn has_outlasted_reset(&self) -> bool {
+    pub fn survived_reset(&self) -> bool {
         self.mark.load(Ordering::Relaxed) == MARK
     }
 
@@ -190,18 +190,18 @@ mod tests {
     #[test]
     fn only_a_record_that_a_start_has_marked_has_outlasted_a_reset() {
         let record = FaultRecord::new();
-        assert!(!record.has_outlasted_reset());
+        assert!(!record.survived_reset());
         record.mark();
         record.save(Fault::Panic, 1, &mut |text| _ = text.text("again"));
-        assert!(record.has_outlasted_reset() && take(&record).is_some() && record.has_outlasted_reset());
+        assert!(record.survived_reset() && take(&record).is_some() && record.survived_reset());
         for bit in 0..32 {
             record.mark();
             record.mark.fetch_xor(1 << bit, Ordering::Relaxed);
-            assert!(!record.has_outlasted_reset(), "bit {bit}");
+            assert!(!record.survived_reset(), "bit {bit}");
         }
         for fill in 0..=u8::MAX {
             record.mark.store(u32::from_le_bytes([fill; 4]), Ordering::Relaxed);
-            assert!(!record.has_outlasted_reset(), "{fill:#04x}");
+            assert!(!record.survived_reset(), "{fill:#04x}");
         }
     }
 

@@ -21,7 +21,7 @@ const READ_AFTER: u32 = 2_000;
 /// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is
 /// the next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its
 /// first half.
-fn zero_within(reading_ticks: u32) -> Duration {
+fn zero_deadline(reading_ticks: u32) -> Duration {
     reading_ticks * TICK + TICK / 2
 }
 
@@ -30,7 +30,7 @@ fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
 }
 
 /// Plays, breaks something, and expects that the board stops with a fault at the last of so many ticks that read it.
-fn breaks(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
+fn check_fault(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let host = bench.play(CONSTANT);
@@ -43,7 +43,7 @@ fn breaks(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
     let zero_since = bench.with(|rig| rig.zero_since()).unwrap_or_else(|| panic!("{fault:?}: the output is not zero"));
     let late = zero_since.saturating_sub(begin);
     println!("{fault:?}: the output was zero after {late:?}");
-    assert!(late <= zero_within(reading_ticks), "{fault:?}: the output was zero after {late:?}");
+    assert!(late <= zero_deadline(reading_ticks), "{fault:?}: the output was zero after {late:?}");
     drop(host);
     let hello = *bench.connect().hello();
     assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(fault)));
@@ -51,13 +51,13 @@ fn breaks(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
 
 #[test]
 fn a_ready_line_that_falls_stops_the_output() {
-    breaks(BrokenInputs { ready: Some(false), ..BrokenInputs::default() }, Fault::Amplifier, READY_TICKS);
+    check_fault(BrokenInputs { ready: Some(false), ..BrokenInputs::default() }, Fault::Amplifier, READY_TICKS);
 }
 
 #[test]
 fn a_monitor_that_shows_nothing_stops_the_output() {
     let broken = BrokenInputs { monitor_v: Some(0.0), ..BrokenInputs::default() };
-    breaks(broken, Fault::Monitor, MONITOR_TICKS);
+    check_fault(broken, Fault::Monitor, MONITOR_TICKS);
 }
 
 /// A single reading that is disturbed makes up for itself in the next ticks, so that many of them do not add up. With a
@@ -80,7 +80,7 @@ fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
 #[test]
 fn a_switch_that_is_let_go_stops_the_output() {
     let broken = BrokenInputs { arm_switch: Some(false), ..BrokenInputs::default() };
-    breaks(broken, Fault::ArmSwitch, SWITCH_TICKS);
+    check_fault(broken, Fault::ArmSwitch, SWITCH_TICKS);
 }
 
 /// The firmware disables the amplifier by its pin, too.

@@ -81,7 +81,7 @@ impl Ending {
 }
 
 /// Plays, lets the play end so at a random instruction, and returns the hello of the next start.
-fn suffer(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
+fn end_play(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
     let host = bench.play(CONSTANT);
     for _ in 0..random.below(20) {
         bench.step();
@@ -130,9 +130,9 @@ fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
 }
 
 /// Lets plays end so, at random instructions, each on a board that was just switched on.
-fn suffer_often(image: &Image, ending: Ending, times: u64) {
+fn end_plays(image: &Image, ending: Ending, times: u64) {
     for seed in 0..times {
-        let hello = suffer(&Bench::new(image), ending, &mut Random::new(1_000 * ending as u64 + seed));
+        let hello = end_play(&Bench::new(image), ending, &mut Random::new(1_000 * ending as u64 + seed));
         let expected = (ending.reported().0, ending.reported().1, State::Disarmed);
         assert_eq!((hello.reset_cause, hello.last_fault, hello.state), expected, "{ending:?}, seed {seed}");
     }
@@ -144,7 +144,7 @@ fn suffer_often(image: &Image, ending: Ending, times: u64) {
 fn whatever_ends_a_play_leaves_the_output_at_zero() {
     let Some(image) = emulator::pico_image() else { return };
     for ending in Ending::ALL {
-        suffer_often(&image, ending, 1);
+        end_plays(&image, ending, 1);
     }
 }
 
@@ -155,7 +155,7 @@ macro_rules! at_any_of_a_hundred_instructions {
         #[ignore = "takes minutes: `cargo xtask soak pico`"]
         fn $name() {
             let Some(image) = emulator::pico_image() else { return };
-            suffer_often(&image, $ending, $times);
+            end_plays(&image, $ending, $times);
         }
     )+};
 }

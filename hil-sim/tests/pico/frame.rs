@@ -58,7 +58,7 @@ fn comes_back(bench: &Bench, host: &mut Host) {
 
 /// The frame is out of order for a while: the output falls to zero in time and stays there, the board stays up, and
 /// once the frame is repaired it drives again. Returns what happened on the wires while the frame was out of order.
-fn suffers(
+fn break_and_repair(
     bench: &Bench,
     host: &mut Host,
     breaks: impl FnOnce(&mut TouchFrame),
@@ -105,8 +105,12 @@ fn count(events: &[WireEvent], event: WireEvent) -> usize {
 fn a_frame_that_does_not_acknowledge_stops_the_output_until_it_does() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);
-    let events =
-        suffers(&bench, &mut host, |frame| frame.module().connect(false), |frame| frame.module().connect(true));
+    let events = break_and_repair(
+        &bench,
+        &mut host,
+        |frame| frame.module().connect(false),
+        |frame| frame.module().connect(true),
+    );
     let asked = events.iter().filter(|event| matches!(event, WireEvent::I2cAddress { .. })).count();
     assert!((2..=3).contains(&asked), "it is asked again every 0.1 s, not {asked} times");
     has_stayed_on_the_line(&bench, host);
@@ -131,9 +135,9 @@ fn a_board_without_its_frame_is_there_and_drives_nothing() {
 fn a_clock_that_is_held_stops_the_output_until_it_is_released() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);
-    suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
+    break_and_repair(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
     reads_a_report(&bench, &mut host);
-    suffers(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
+    break_and_repair(&bench, &mut host, |frame| frame.holds_scl = true, |frame| frame.holds_scl = false);
     has_stayed_on_the_line(&bench, host);
 }
 
@@ -162,12 +166,12 @@ fn a_short_of_the_data_line_stops_the_output_until_it_is_gone() {
     let short = HeldBus::new(Transfer::Idle, 0);
     short.short_sda();
     let breaks = |frame: &mut TouchFrame| frame.holds_sda = Some(short.clone());
-    let events = suffers(&bench, &mut host, breaks, |frame| frame.holds_sda = None);
+    let events = break_and_repair(&bench, &mut host, breaks, |frame| frame.holds_sda = None);
     let tries = short.pulses() / 9;
     assert!((2..=3).contains(&tries) && short.pulses().is_multiple_of(9), "{} clocks", short.pulses());
     assert_eq!(count(&events, WireEvent::Scl(true)), short.pulses() as usize);
     reads_a_report(&bench, &mut host);
-    suffers(&bench, &mut host, breaks, |frame| frame.holds_sda = None);
+    break_and_repair(&bench, &mut host, breaks, |frame| frame.holds_sda = None);
     has_stayed_on_the_line(&bench, host);
 }
 

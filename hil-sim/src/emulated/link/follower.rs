@@ -68,7 +68,7 @@ impl Follower {
             self.begin_faults()?;
             self.follow()?;
             self.end_faults()?;
-            self.serial.let_the_next_host_in()?;
+            self.serial.accept_next_host()?;
             thread::sleep(POLL_PERIOD);
         }
         Ok(())

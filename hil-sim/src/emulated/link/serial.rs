@@ -30,7 +30,7 @@ impl Serial {
 
     /// Ends exclusive mode, so that the next host can open the port. A host may have opened it exclusively, which
     /// lasts as long as any process has it open.
-    pub(super) fn let_the_next_host_in(&self) -> Result<(), EmulatorError> {
+    pub(super) fn accept_next_host(&self) -> Result<(), EmulatorError> {
         let refused =
             |error: rustix::io::Errno| EmulatorError::system("freeing the emulator's serial port")(error.into());
         rustix::termios::ioctl_tiocnxcl(&self.0).map_err(refused)

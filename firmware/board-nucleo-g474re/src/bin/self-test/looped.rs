@@ -14,7 +14,7 @@ use frixel_board::hardware::DacFrames as _;
 use frixel_board::main_loop::MainLoop;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
-use frixel_cortex_m::{Boot, never};
+use frixel_cortex_m::{Boot, unreachable_state};
 use frixel_drivers::ad5761r::FrameBus as _;
 use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
@@ -86,7 +86,7 @@ impl Looped {
     fn still(&mut self) -> &mut Still {
         match &mut self.stage {
             Stage::Still(still) => still,
-            Stage::Ticking(..) | Stage::Neither => never(),
+            Stage::Ticking(..) | Stage::Neither => unreachable_state(),
         }
     }
 
@@ -94,7 +94,7 @@ impl Looped {
         match &mut self.stage {
             Stage::Still(still) => &mut still.captures,
             Stage::Ticking(_, captures) => captures,
-            Stage::Neither => never(),
+            Stage::Neither => unreachable_state(),
         }
     }
 }
@@ -204,7 +204,7 @@ impl LoopedBoard for Looped {
             Stage::Ticking(main_loop, _) => {
                 Round { status: &main_loop.status, now_tick: tick::count(), session: main_loop.session }
             }
-            Stage::Still(_) | Stage::Neither => never(),
+            Stage::Still(_) | Stage::Neither => unreachable_state(),
         }
     }
 
