@@ -74,10 +74,11 @@ fn modules_of(file: &Path) -> Vec<PathBuf> {
 /// The folders of the repository that documents name.
 const TOPS: [&str; 8] = ["docs", "firmware", "fuzz", "hardware", "hil-sim", "host", "model", "xtask"];
 
-/// The pages of `docs`, and their texts.
+/// The documents of the repository, and their texts: no texts that tests compare, nothing that others wrote.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
-    files_below(&root().join("docs"), "md", &mut files);
+    files_below(&root(), "md", &mut files);
+    files.retain(|file| !file.iter().any(|part| ["corpus", "target", ".venv"].iter().any(|name| part == *name)));
     files.into_iter().map(|file| (file.clone(), fs::read_to_string(file).unwrap())).collect()
 }
 
@@ -123,13 +124,8 @@ fn every_source_that_the_architecture_names_exists() {
 /// All documents together have at most 400 kB, and no line above 160 characters but in tables.
 #[test]
 fn documents_are_short() {
-    let mut files = Vec::new();
-    files_below(&root(), "md", &mut files);
-    // What tests compare, and the packages of others.
-    files.retain(|file| !file.iter().any(|part| ["corpus", "target", ".venv"].iter().any(|name| part == *name)));
     let mut bytes = 0;
-    for file in files {
-        let text = fs::read_to_string(&file).unwrap();
+    for (file, text) in pages() {
         bytes += text.len();
         let long = text.lines().find(|line| !line.starts_with('|') && line.chars().count() > 160);
         assert!(long.is_none(), "{}: more than 160 characters: {}", file.display(), long.unwrap_or_default());
@@ -150,7 +146,7 @@ fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
             let file = if path.is_empty() { document.clone() } else { document.with_file_name(path) };
             assert!(file.exists(), "{} links to {link}, which does not exist", document.display());
             let has_anchor =
-                anchor.is_empty() || anchors(&fs::read_to_string(&file).unwrap()).any(|name| name == anchor);
+                anchor.is_empty() || anchors(&fs::read_to_string(&file).unwrap()).iter().any(|name| name == anchor);
             assert!(has_anchor, "{} links to {link}, which is no heading there", document.display());
             count += 1;
         }
@@ -158,10 +154,22 @@ fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
     assert!(count > 200, "{count}");
 }
 
-/// The anchors of a page's headings, as GitHub makes them.
-fn anchors(text: &str) -> impl Iterator<Item = String> + '_ {
-    text.lines().filter(|line| line.starts_with('#')).map(|line| {
-        let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
-        words.chars().filter(|letter| letter.is_alphanumeric() || ['-', '_'].contains(letter)).collect()
-    })
+/// The anchors of a page's headings, as GitHub makes them. A line in a code fence is no heading.
+fn anchors(text: &str) -> Vec<String> {
+    let mut is_code = false;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        is_code ^= line.trim_start().starts_with("```");
+        if !is_code && line.starts_with('#') {
+            let words = line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+            found
+                .push(words.chars().filter(|letter| letter.is_alphanumeric() || ['-', '_'].contains(letter)).collect());
+        }
+    }
+    found
+}
+
+#[test]
+fn a_comment_in_a_code_fence_is_no_heading() {
+    assert_eq!(anchors("# A page\n```sh\n# builds it\n```\n## Next, `x_y`\n"), ["a-page", "next-x_y"]);
 }
