@@ -232,7 +232,7 @@ fn the_page_has_the_numbers_of_the_command() {
         assert!(text.contains(found) && PAGE.replace('\n', " ").contains(said), "{found}: {text}");
     }
     // Those of the return path.
-    let hardware = include_str!("../../../docs/board/hardware.md");
+    let hardware = include_str!("../../../docs/board/hardware.md").replace('\n', " ");
     for (found, said) in [
         ("1000 Hz   99  98  return contact", "99 % of the voltage is across the gap, and 98 % of the force"),
         ("1000 Hz   21   4  no contact, the common isolated", "without the contact 21 % and 4 %"),
