@@ -30,9 +30,8 @@ const COMPARED_V_RMS: f64 = 1.0;
 /// Radius 8 mm, stiffness 18 MPa/m, friction coefficient 0.5, a coating of 1 um of silicon dioxide and a skin gap of
 /// 4.74 um: the profile of `scenes/fingers/example.toml`, which gives the reasons. The profile is assumed.
 pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
-    let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
     let (coating_gap_um, skin_gap_um) = (1.0 / 3.9, 4.74);
-    Contact::new(&finger, 1e-6 * (coating_gap_um + skin_gap_um))?.under_load(0.5)
+    Contact::new(&Finger::<f64>::EXAMPLE, 1e-6 * (coating_gap_um + skin_gap_um))?.under_load(0.5)
 }
 
 /// Friction under the finger, in newtons.

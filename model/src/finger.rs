@@ -16,6 +16,20 @@ pub struct Finger<T> {
     pub friction_coefficient: T,
 }
 
+impl Finger<f64> {
+    /// The finger of this crate's examples; `scenes/fingers/example.toml` says where its numbers are from. Assumed.
+    pub const EXAMPLE: Self = Self { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+}
+
+impl Finger<f32> {
+    /// The finger of this crate's examples, in `f32`.
+    pub const EXAMPLE: Self = Self {
+        radius_m: Finger::<f64>::EXAMPLE.radius_m as f32,
+        stiffness_pa_per_m: Finger::<f64>::EXAMPLE.stiffness_pa_per_m as f32,
+        friction_coefficient: Finger::<f64>::EXAMPLE.friction_coefficient as f32,
+    };
+}
+
 impl<T: Real> Finger<T> {
     pub(crate) fn validate(&self) -> Result<(), ParameterError> {
         positive("radius_m", self.radius_m)?;

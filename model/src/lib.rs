@@ -1,16 +1,29 @@
-//! Contact model of an electrovibration touchscreen: computes the friction on a finger from the voltage, and the
-//! voltage from the friction.
+//! Contact model of an electrovibration touchscreen: computes the voltage for a friction on a finger, and the friction
+//! that a voltage causes.
+//!
+//! Start at [`InverseTable::of_finger`]. It builds the table that a device reads in every tick: from electric friction in
+//! newtons to volts, without root or division. It takes 2 KB and is built without `f64`.
+//!
+//! ```
+//! use frixel_model::{Finger, InverseTable};
+//! // 10 um of coating, 0.5 N of load, at most 150 V, all of the friction that this reaches.
+//! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, 150.0, f32::INFINITY)?;
+//! let voltage_v_rms = table.voltage_v_rms(0.02);
+//! assert!((voltage_v_rms - 128.0).abs() < 0.5);
+//! # Ok::<(), frixel_model::TableError>(())
+//! ```
+//!
+//! On a desktop, [`Contact`] evaluates the model itself: create it from a finger and a coating, apply a load, then
+//! evaluate it at a voltage or a friction.
+//!
+//! The crate is `no_std`, does not allocate or panic, and gives the same bits on a desktop and on a microcontroller.
+//! Units are SI and part of the names; a voltage is the root mean square of the drive. The crate works with the
+//! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and a
+//! difference of totals would lose its precision.
 //!
 //! The model is by I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger with a
-//! touchscreen"; equation numbers are theirs. The crate is `no_std`, does not allocate or panic, and gives the same
-//! bits on a desktop and on a microcontroller. Units are SI and part of the names; a voltage is the root mean square of
-//! the drive.
-//!
-//! Start at [`Contact`]: create it from a finger and a coating, apply a load, then evaluate it at a voltage or a
-//! friction. On a device, [`InverseTable`] computes the voltage without root or division. The crate works with the
-//! **electric friction** `F_T - mu F_N` throughout: under a load it is small compared to the total friction, and a
-//! difference of totals would lose its precision. Beyond the paper, [`Carrier`] models the losses between the DAC and
-//! the electrode, and [`TouchBound`] the voltage at which touching the electrode through a bridged or a thin coating is
+//! touchscreen"; equation numbers are theirs. Beyond the paper, [`Carrier`] models the losses between the DAC and the
+//! electrode, and [`TouchBound`] the voltage at which touching the electrode through a bridged or a thin coating is
 //! still safe.
 //!
 //! # Where each equation is
@@ -97,7 +110,7 @@
 //!
 //! ```
 //! use frixel_model::{Contact, ContactModel, Finger};
-//! let one = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+//! let one = Finger::<f64>::EXAMPLE;
 //! let other = Finger { radius_m: 16e-3, stiffness_pa_per_m: 2.25e6, friction_coefficient: 0.5 };
 //! let one = Contact::new(&one, 10e-6)?.under_load(0.5)?.state(150.0)?;
 //! let other = Contact::new(&other, 20e-6)?.under_load(0.5)?.state(150.0)?;

@@ -4,7 +4,7 @@
 use frixel_model::{Contact, Finger, InverseTable, LoadedContact, TableError};
 
 /// The example finger.
-const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const GAP_M: f64 = 10e-6;
 const BOUND: f64 = InverseTable::RELATIVE_ERROR as f64;
 

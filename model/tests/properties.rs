@@ -227,7 +227,7 @@ fn slope(model: &dyn ContactModel<f64>, voltage_v_rms: f64) -> f64 {
 /// Eqs. (34), (36) begin with slope 1 in sigma0, not with slope 2 as Section VI.A of the paper has it.
 #[test]
 fn limits_of_small_and_large_voltage() {
-    let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+    let finger = Finger::<f64>::EXAMPLE;
     let (gap_m, outer_radius_m) = (1e-5, 4e-4);
     let contact = Contact::new(&finger, gap_m).unwrap();
     let upper = contact.under_load(0.0).unwrap();
@@ -328,7 +328,7 @@ fn force_laws_agree() {
 /// same.
 #[test]
 fn friction_does_not_identify_radius_stiffness_and_gap() {
-    let one = Contact::new(&Finger { radius_m: 8e-3_f64, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5);
+    let one = Contact::new(&Finger::<f64>::EXAMPLE, 1e-5);
     let other =
         Contact::new(&Finger { radius_m: 16e-3_f64, stiffness_pa_per_m: 2.25e6, friction_coefficient: 0.5 }, 2e-5);
     for load_n in [0.0, 0.1, 0.5] {
@@ -344,7 +344,7 @@ fn friction_does_not_identify_radius_stiffness_and_gap() {
 /// In its own scales, every contact is the universal curve.
 #[test]
 fn universal_curve_is_every_contacts() {
-    let contact = Contact::new(&Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5);
+    let contact = Contact::new(&Finger::<f64>::EXAMPLE, 1e-5);
     let contact = contact.unwrap();
     let load_n = 0.5;
     let universal = Contact::<f64>::universal().under_load(contact.load(load_n)).unwrap();

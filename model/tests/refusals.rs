@@ -7,7 +7,7 @@ use frixel_model::{
 };
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 0.0];
-const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const SOFT: SoftFinger<f64> = SoftFinger {
     radius_m: 8e-3,
     modulus_pa: 1e5,

@@ -7,7 +7,7 @@ use frixel_model::{Contact, Finger, FixedTable, InverseTable, LoadedContact, Rea
 use crate::count::Counter;
 
 /// The example finger: radius, stiffness, friction coefficient; coating; load; largest voltage.
-const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const EFFECTIVE_GAP_M: f64 = 1e-5;
 const NORMAL_LOADS_N: [f64; 2] = [0.0, 0.5];
 const VOLTAGE_MAX_V_RMS: f64 = 200.0;

@@ -10,7 +10,7 @@ use frixel_layers::{BitmapPool, Blend, Constant, Header, Layer, Record, Region};
 use frixel_model::{Carrier, Contact, Finger, InverseTable};
 use frixel_testkit::{HEADER, IdealMonitor};
 
-const FINGER: Finger<f32> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const FINGER: Finger<f32> = Finger::<f32>::EXAMPLE;
 const GAP_M: f32 = 1e-5;
 const LOAD_N: f32 = 0.5;
 /// Electric friction of the only layer, N.

@@ -26,8 +26,7 @@ use curve::Point;
 ///
 /// ```
 /// use frixel_model::{Contact, ContactModel, Finger};
-/// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
-/// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
+/// let contact = Contact::new(&Finger::<f64>::EXAMPLE, 10e-6)?.under_load(0.5)?;
 /// assert_eq!(contact.natural_friction_n(), 0.25);
 /// let state = contact.state(150.0)?;
 /// assert!((state.electric_friction_n - 28e-3_f64).abs() < 0.5e-3);

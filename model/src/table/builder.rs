@@ -23,8 +23,7 @@ pub enum Precision {
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, Precision, TableBuilder};
-/// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
-/// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
+/// let contact = Contact::new(&Finger::<f64>::EXAMPLE, 10e-6)?.under_load(0.5)?;
 /// let builder = TableBuilder::new(&contact, 1e-6, 28e-3, 1e-3)?;
 /// let shape = builder.smallest(Precision::F32)?;
 /// assert_eq!((shape.coefficients, shape.rows, shape.bytes()), (4, 18, 288));

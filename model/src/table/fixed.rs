@@ -19,8 +19,7 @@ const FRICTION_STEPS: f64 = (1_u64 << 32) as f64;
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, TableBuilder, U0F32, U1F31};
-/// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
-/// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
+/// let contact = Contact::new(&Finger::<f64>::EXAMPLE, 10e-6)?.under_load(0.5)?;
 /// let builder = TableBuilder::new(&contact, 1e-6, 28e-3, 1e-3)?;
 /// let mut rows = [[0; 4]; 64];
 /// let table = builder.build_fixed(&mut rows)?;

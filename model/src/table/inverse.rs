@@ -30,8 +30,7 @@ const KNEE_PART: f32 = 1.0 / 200.0;
 ///
 /// ```
 /// use frixel_model::{Contact, Finger, InverseTable};
-/// let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
-/// let contact = Contact::new(&finger, 10e-6)?.under_load(0.5)?;
+/// let contact = Contact::new(&Finger::<f64>::EXAMPLE, 10e-6)?.under_load(0.5)?;
 /// let table = InverseTable::build(&contact, 150.0)?;
 /// let voltage_v_rms = table.voltage_v_rms(0.01);
 /// let friction_n = contact.electric_friction_n(f64::from(voltage_v_rms));

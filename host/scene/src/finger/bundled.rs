@@ -1,5 +1,7 @@
 //! The bundled finger profiles, which are files in `scenes/fingers`.
 
+use frixel_model::Finger;
+
 use super::{Elasticity, Evidence, FingerProfile};
 
 /// Name and text of each profile.
@@ -12,10 +14,10 @@ pub(super) const TEXTS: [(&str, &str); 4] = [
 
 /// The first profile of [`TEXTS`], which a test compares with its text.
 pub(super) const EXAMPLE: FingerProfile = FingerProfile {
-    friction_coefficient: 0.5,
+    friction_coefficient: Finger::<f64>::EXAMPLE.friction_coefficient,
     normal_load_n: 0.5,
-    radius_mm: 8.0,
-    elasticity: Elasticity::WinklerFuss { stiffness_pa_per_m: 1.8e7 },
+    radius_mm: 1e3 * Finger::<f64>::EXAMPLE.radius_m,
+    elasticity: Elasticity::WinklerFuss { stiffness_pa_per_m: Finger::<f64>::EXAMPLE.stiffness_pa_per_m },
     skin_gap_um: 4.74,
     evidence: Evidence::Assumed,
 };
