@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
+use crate::documented::row_of_page;
 
 use std::collections::BTreeMap;
 
@@ -99,11 +100,15 @@ fn inverse<T: Real + 'static>(distort: impl Fn(T) -> T) -> Worst {
     worst
 }
 
-/// Asserts that every variant keeps its bound, and that every variant exceeds it when the output is forced to zero.
+/// Asserts that every variant keeps its bound, that the page has how much of it is used, and that every variant exceeds
+/// it when the output is forced to zero.
 fn hold(what: &str, found: &Worst, zeroed: &Worst) {
     assert_eq!(found.len(), 7);
     for (variant, (share, place)) in found {
+        let column = row_of_page("variant").iter().position(|heading| heading == what).unwrap();
+        let on_page = &row_of_page(&format!("`{variant}`"))[column];
         println!("{what} {variant}: {share:.2} of the bound");
+        assert_eq!(*on_page, format!("{share:.2}"), "{what} {variant} in docs/inside/model.md");
         assert!(*share <= 1.0, "{what} {variant}: {share} of the bound at {place}");
         assert!(zeroed[variant].0 > 1.0, "{what} {variant} passes with a zero output");
     }

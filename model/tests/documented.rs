@@ -1,5 +1,5 @@
-//! The figures in the crate's own docs: each is read from `src/lib.rs` and held against the model, to its last digit.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
+//! The figures in the crate's own docs and in `docs/inside/model.md`, held against the model, to their last digit.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_model::{Contact, ContactModel, Finger, LoadedContact};
 
@@ -22,8 +22,17 @@ fn rounds_to(found: f64, written: &str) {
     assert!(error <= half * (1.0 + 1e-9), "{found} is not {written}");
 }
 
+/// A row of a table in `docs/inside/model.md`: the texts of its cells, the first of which is `name`.
+pub(crate) fn row_of_page(name: &str) -> Vec<String> {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/inside/model.md");
+    let text = std::fs::read_to_string(page).unwrap();
+    let cells = |line: &str| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let mut rows = text.lines().filter(|line| line.starts_with('|')).map(cells);
+    rows.find(|cells| cells[0] == name).unwrap_or_else(|| panic!("docs/inside/model.md has no row {name}"))
+}
+
 fn example() -> Contact<f64> {
-    Contact::new(&Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 }, 1e-5).unwrap()
+    Contact::new(&Finger::<f64>::EXAMPLE, 1e-5).unwrap()
 }
 
 /// `d ln F_T/d ln sigma0`, half of that over the voltage.

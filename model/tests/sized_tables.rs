@@ -1,9 +1,11 @@
 //! Tables of every order and both precisions against the closed form: the proven bound, and how sharp it is.
 #![allow(clippy::unwrap_used)]
 
-use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError, U0F32, U1F31};
+use frixel_model::{Contact, Finger, LoadedContact, Precision, TableBuilder, TableError, TableShape, U0F32, U1F31};
 
-const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+use crate::documented::row_of_page;
+
+const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 
 fn contact(gap_m: f64, normal_load_n: f64) -> LoadedContact<f64> {
     Contact::new(&FINGER, gap_m).unwrap().under_load(normal_load_n).unwrap()
@@ -202,7 +204,19 @@ fn smallest_is_the_smallest_of_all_orders() {
             }
         }
         let smallest = builder.smallest(Precision::F32).unwrap();
-        println!("{target:e}: {smallest:?} {} bytes", smallest.bytes());
+        let grouped = |bytes: usize| match bytes {
+            ..1000 => bytes.to_string(),
+            _ => format!("{},{:03}", bytes / 1000, bytes % 1000),
+        };
+        let TableShape { coefficients, rows, relative_error, .. } = smallest;
+        let row = [
+            format!("{target:e}"),
+            coefficients.to_string(),
+            rows.to_string(),
+            grouped(smallest.bytes()),
+            format!("{relative_error:.2e}"),
+        ];
+        assert_eq!(row_of_page(&row[0]), row, "docs/inside/model.md");
         assert!(smallest.bytes() > bytes, "a finer target costs more");
         bytes = smallest.bytes();
     }
