@@ -1,4 +1,9 @@
 //! Reads a scenario's file.
+//!
+//! [`Fields`], the reader of scene files, does so instead of `serde`. `serde` stops at the first mistake and names a
+//! type; this reader finds all mistakes, and its sentences name line, column, unit, range and the nearest word
+//! (`tests/corpus/scenarios/mistakes.md`). With `serde`, every struct would carry spans, and the same checks would
+//! follow. The constants of [`super::tables`] are read here, and compared with the documentation by a test.
 
 use std::collections::{HashMap, HashSet};
 
