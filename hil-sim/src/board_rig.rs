@@ -33,9 +33,9 @@ pub struct RigTick<S = BoardView> {
     pub tick: u64,
     /// The board's output.
     pub drive: Drive,
-    /// What the finger felt.
+    /// Friction under the finger, with the finger's state.
     pub felt: Felt,
-    /// The board's status: a [`Status`] on the in-process rig, otherwise as much as the rig knows of it.
+    /// The board's status: a complete [`Status`] on the in-process rig, partial on others.
     pub status: S,
 }
 

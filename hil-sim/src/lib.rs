@@ -1,7 +1,7 @@
 //! A simulator of amplifier, screen and finger, in virtual time.
 //!
 //! - [`World`]: everything outside the board's pins. Each tick it returns a [`Sense`](frixel_control::Sense), takes a
-//!   [`Drive`], and returns what the finger [felt](Felt).
+//!   [`Drive`], and returns the friction that the finger [felt](Felt).
 //! - [`Stroke`]: the place of the finger over time.
 //! - [`Rig`]: a board and its world on one thread.
 //! - [`BoardRig`]: the common interface of rigs for scenarios: a board with a serial line, and faults of both.

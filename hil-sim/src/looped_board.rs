@@ -44,7 +44,7 @@ pub trait Port {
     /// Called when `ticks` have passed on the board; waits if there is a real-time clock.
     fn pace(&mut self, ticks: u32);
 
-    /// Called when the board waits for a byte. Returns `false` if there will be none.
+    /// Called when the board waits for a byte. Returns `false` at the end of the line's bytes.
     fn wait(&mut self) -> bool;
 
     /// Called when the board has sent everything and stays on; returns once there are no readers.

@@ -206,7 +206,7 @@ impl<'a> Rig<'a> {
         self.journal = Some(Journal::new());
     }
 
-    /// Ends the journal and returns it; `None` when none was started.
+    /// Ends the journal and returns it; `None` without a started journal.
     pub fn take_journal(&mut self) -> Option<Journal> {
         self.journal.take()
     }

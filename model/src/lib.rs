@@ -1,8 +1,8 @@
 //! Contact model of an electrovibration touchscreen: computes the voltage for a friction on a finger, and the friction
 //! that a voltage causes.
 //!
-//! Start at [`InverseTable::of_finger`]. It builds the table that a device reads in every tick: from electric friction in
-//! newtons to volts, without root or division. It takes 2 KB and is built without `f64`.
+//! Start at [`InverseTable::of_finger`]. It builds the table that a device reads in every tick: from electric friction
+//! in newtons to volts, without root or division. It takes 2 KB and is built without `f64`.
 //!
 //! ```
 //! use frixel_model::{Finger, InverseTable};

@@ -51,7 +51,7 @@ pub enum EmulatorError {
     NotACheckout {
         /// The folder, as in the environment.
         folder: String,
-        /// What is missing.
+        /// The missing part of a checkout.
         missing: String,
     },
     /// The image does not compile.

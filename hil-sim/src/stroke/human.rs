@@ -78,7 +78,7 @@ const TOUCH_STATISTICS: [TouchStatistics; 4] = [
 ];
 
 impl TouchStatistics {
-    /// Those of a median speed: interpolated over its logarithm between table entries, constant beyond.
+    /// Statistics at a median speed: interpolated over its logarithm between table entries, constant beyond.
     fn at(median_m_per_s: f64) -> Self {
         let [first, .., last] = TOUCH_STATISTICS;
         let pairs = TOUCH_STATISTICS.iter().zip(TOUCH_STATISTICS.iter().skip(1));

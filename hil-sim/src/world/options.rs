@@ -21,7 +21,7 @@ pub struct WorldOptions {
     pub finger: Option<OwnFinger>,
 }
 
-/// A finger of the world's own. The board and its scene do not know it.
+/// A finger that replaces the scene's in the world. Board and scene keep the scene's finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnFinger {
     /// Steady friction on the screen.

@@ -2,9 +2,8 @@
 
 use std::ops::ControlFlow;
 
-/// Function that long work calls many times a second, from several threads if it has them. When it breaks, the work
-/// ends there.
+/// Callback of long work, called many times a second, from each of its threads. A break ends the work.
 pub type GoesOn<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
-/// Lets all work go on to its end.
+/// Never breaks: the work runs to its end.
 pub const TO_THE_END: GoesOn<'static> = &|| ControlFlow::Continue(());

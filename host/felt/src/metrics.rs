@@ -239,7 +239,7 @@ impl Ring {
         self.filled == self.values.len()
     }
 
-    /// The value that came `ago` values before the last one.
+    /// The value `ago` values before the last one.
     fn ago(&self, ago: usize) -> f64 {
         let length = self.values.len();
         self.values[(self.next + length - 1 - ago) % length]

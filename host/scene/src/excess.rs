@@ -181,7 +181,7 @@ impl Demand<'_> {
         sides
     }
 
-    /// Advice for friction above what can be reached.
+    /// Advice for friction above the reach.
     fn cure_above(&self, is_sum: bool) -> Box<str> {
         let lower = if is_sum { "lower one of them" } else { "lower it" };
         match &self.largest_of {

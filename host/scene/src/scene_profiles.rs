@@ -20,7 +20,7 @@ pub enum ProfileSource {
     Named(String),
     /// A table of the scene file.
     Embedded,
-    /// The scene names none: the example is used.
+    /// The scene has no such field: the example is used.
     Example,
 }
 
@@ -53,7 +53,7 @@ struct ProfileField<P> {
     field: &'static FieldSpec,
     /// Reads it from a table of the scene.
     table: fn(Fields, &mut Log) -> Option<P>,
-    /// The one of a scene that has none.
+    /// The default of a scene without one.
     example: fn() -> P,
 }
 

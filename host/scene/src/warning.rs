@@ -1,5 +1,5 @@
-//! Warnings: the program can be played, but exceeds the validity of the model or the finger's profile, or is probably
-//! not what its author intended.
+//! Warnings: the program can be played, but exceeds the validity of the model or the finger's profile, or probably
+//! differs from its author's intention.
 
 use frixel_layers::{Blend, Interval};
 use serde::Serialize;

@@ -159,7 +159,7 @@ impl PicoRig {
         }
     }
 
-    /// Lets the touch frame answer what happened on its bus.
+    /// Lets the touch frame answer an event on its bus.
     fn answer(&mut self, events: &[Stamped]) -> Result<(), EmulatorError> {
         for stamped in events {
             if let Some(answer) = self.frame.as_mut().and_then(|frame| frame.answer(stamped.event)) {

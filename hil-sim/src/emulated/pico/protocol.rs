@@ -55,7 +55,7 @@ pub enum StartCause {
     Software,
 }
 
-/// What happened on the board's wires.
+/// Event on the board's wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WireEvent {
     /// SYNC rose after a frame for the DAC.
@@ -97,12 +97,12 @@ pub enum WireEvent {
     Scl(bool),
 }
 
-/// An event, with its time since the board was first switched on.
+/// An event with its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamped {
-    /// When it happened.
+    /// Time since the board was first switched on.
     pub at: Duration,
-    /// What happened.
+    /// The event.
     pub event: WireEvent,
 }
 

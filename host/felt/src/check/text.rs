@@ -8,7 +8,7 @@ use crate::judge::named;
 use frixel_scene::{Origin, OutOfReach, TargetRange};
 
 impl SceneCheck {
-    /// The check as lines of text, each ending in a line feed: what is felt, the newtons behind it, and whether the
+    /// The check as lines of text, each ending in a line feed: verdicts, the newtons behind them, and whether the
     /// scene fits the board. With `with_costs`, every number of bytes and cycles follows.
     pub fn summary(&self, with_costs: bool) -> String {
         let mut lines = feel::lines(&self.judgement);
@@ -28,7 +28,7 @@ impl SceneCheck {
         feel::text(&lines)
     }
 
-    /// The finger, what can be reached on it, and what the scene targets.
+    /// The finger, the friction in reach on it, and the scene's targets.
     fn newtons(&self) -> [Line; 3] {
         let Self { finger, reach, targets, .. } = self;
         let suffix = Origin::newtons_suffix_of(finger.origin);

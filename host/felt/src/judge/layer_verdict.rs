@@ -29,7 +29,7 @@ pub struct LayerVerdict {
     pub speed_mm_per_s: Option<f64>,
     /// Reasons why it is not certainly perceived, or not as designed.
     pub reasons: Vec<Reason>,
-    /// A change that would make it perceptible; absent if none was sought.
+    /// A change that would make it perceptible; absent without such advice.
     pub advice: Option<String>,
     /// The variable over which the contrast is measured.
     pub over: Over,

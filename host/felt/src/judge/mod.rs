@@ -271,7 +271,7 @@ impl Element {
     }
 }
 
-/// The larger of the largest step and the texture, each as a part of what is surely felt.
+/// The larger of the largest step and the texture, each relative to the size that is certainly felt.
 pub fn felt_size(largest_weber_steps: f64, texture: Option<Texture>) -> f64 {
     let step = largest_weber_steps / weber_steps_safe();
     step.max(texture.map_or(0.0, |texture| texture.salience() / THRESHOLD_UNCERTAINTY))

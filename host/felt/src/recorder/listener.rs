@@ -4,7 +4,7 @@ use frixel_model::ParameterError;
 use frixel_scene::{LayerSetting, Program};
 use frixel_wire::hello::BoardLimits;
 
-/// Receives the changes of what a board plays, to compare with felt friction.
+/// Receives the changes of a play, for the reference that felt friction is compared with.
 pub trait PlayListener {
     /// The board switches to another program.
     ///

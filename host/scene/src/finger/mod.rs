@@ -214,7 +214,7 @@ impl FingerProfile {
         bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name).map(|(_, text)| *text)
     }
 
-    /// The finger of a scene that names none.
+    /// The default finger of a scene.
     pub fn example() -> Self {
         bundled::EXAMPLE
     }

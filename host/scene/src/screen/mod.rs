@@ -55,7 +55,7 @@ impl Slab {
 }
 
 impl Screen {
-    /// The screen of a scene that names none: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its own.
+    /// The default screen of a scene: 120 mm by 80 mm, [`Slab::EXAMPLE`], no limits of its own.
     pub fn example() -> Self {
         Self {
             name: Some("example".to_owned()),
