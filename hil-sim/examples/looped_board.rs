@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// What is wrong with the board, by the first argument.
+/// The board's defect, named by the first argument.
 fn wrong() -> Option<Defect> {
     std::env::args().nth(1).map_or(Some(Defect::Nothing), |name| Defect::named(&name))
 }

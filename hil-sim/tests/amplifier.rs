@@ -1,5 +1,5 @@
-//! Amplifiers as they are, in the in-process rig: healthy ones never fault, however they switch off and are switched.
-//! Broken ones are in the tests of `frixel-control`.
+//! Realistic amplifiers in the in-process rig: a healthy one never faults, however it decays and is switched. Broken
+//! ones are in the tests of `frixel-control`.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use crate::script::{HEADER, Script, constant, scene};
@@ -36,7 +36,7 @@ const AMPLIFIER: AmplifierConfig = AmplifierConfig {
     offset_v: 0.5,
     ..AmplifierConfig::IDEAL
 };
-/// Ways to be below 8 V, 4 % of full scale, within a millisecond of 200 V.
+/// Decays from 200 V to below 8 V, 4 % of full scale, within a millisecond.
 const DECAYS: [(f64, Decay); 4] = [
     (0.0, Decay::Linear { v_per_s: 2e5 }),
     (0.0, Decay::Exponential { time_constant_s: 300e-6 }),
@@ -74,7 +74,7 @@ fn place_finger(script: &mut Script) {
     script.rig.world_mut().place_finger(FingerState { x_m, y_m: 0.04, speed_m_per_s: 0.1 });
 }
 
-/// Lifts, stops, disarms and re-touches at random for so many ticks. A finger is down for long enough that its report
+/// Lifts, stops, disarms and re-touches at random for `ticks` ticks. A finger is down for long enough that its report
 /// arrives, and up for as little as a tick.
 fn lift_and_stop(script: &mut Script, random: &mut Random, ticks: u64) {
     let end = script.rig.tick() + ticks;

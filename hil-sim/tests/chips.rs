@@ -14,7 +14,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_drivers::zforce::{self, Touch, ZForce};
 use frixel_hil_sim::chips::{BusFault, HeldBus, PolledDelay, TouchEvent, Transfer, ZForceModule};
 
-/// Polls until the future is ready, at most so many times.
+/// Polls until the future is ready, at most `polls` times.
 fn poll_for<F: Future>(mut future: std::pin::Pin<&mut F>, polls: usize) -> Option<F::Output> {
     (0..polls).find_map(|_| match poll_once(future.as_mut()) {
         Poll::Ready(output) => Some(output),
@@ -75,8 +75,8 @@ fn a_touch_frame_that_fails_is_left_alone_for_a_while_and_set_up_again() {
     assert_eq!(poll_for(touch, 100), Some(Ok(Touch::Up)));
 }
 
-/// A transfer that was given up after any byte costs one pause, not one for every two bytes that are left. What waited
-/// meanwhile is old, and is not reported.
+/// A transfer aborted after any byte costs one pause, not one for every two remaining bytes. Messages that waited
+/// meanwhile are outdated, and are not reported.
 #[test]
 fn a_report_that_was_read_in_part_is_skipped() {
     for len in 1..21 {
@@ -95,7 +95,7 @@ fn a_report_that_was_read_in_part_is_skipped() {
     }
 }
 
-/// After an outage of a second, none of its reports is taken for the finger's place, however many wait.
+/// After an outage of a second, reports from the outage are not used as the finger's place, however many wait.
 #[test]
 fn reports_of_a_long_outage_are_not_reported() {
     let module = ZForceModule::new(0);
@@ -143,7 +143,7 @@ fn a_bus_that_is_free_gets_no_clocks_and_one_that_is_shorted_is_reported() {
     assert!(!clear(&bus) && bus.pulses() == 9);
 }
 
-/// A port that sends what it has received, `room` bytes a tick.
+/// A port that echoes received bytes, `room` bytes a tick.
 #[derive(Default)]
 struct Loopback {
     bytes: VecDeque<u8>,

@@ -37,7 +37,7 @@ fn codes_are_volts_once_the_dac_is_prepared() {
     }
 }
 
-/// Without configuration, zero in two's complement would be minus full scale in straight binary.
+/// Without configuration, the DAC would take zero in two's complement for minus full scale in straight binary.
 #[test]
 fn a_dac_that_lost_its_configuration_is_noticed_and_configured_again() {
     let chip = Ad5761rChip::new();
@@ -216,7 +216,8 @@ fn the_amplifier_is_disabled_before_the_dac_changes() {
     }
 }
 
-/// What [`ad5761r::zero_output`] is for: a complete frame is latched when SYNC rises after CLEAR has fallen.
+/// The reason for the order in [`ad5761r::zero_output`]: a complete frame is latched when SYNC rises after CLEAR has
+/// fallen.
 #[test]
 fn a_frame_that_is_latched_after_clear_puts_its_code_out() {
     let stays_at_zero = |edges_before| {

@@ -19,10 +19,10 @@ const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 const VOLTAGE_MAX_V_RMS: f64 = 200.0;
 const RELATIVE_ERROR: f64 = 1e-5;
 const ROWS: usize = 512;
-/// One of so many frictions is looked up: 8,192 of them.
+/// Distance of the looked-up frictions, in steps: 8,192 look-ups.
 const STEP: usize = 0x8_0003;
 
-/// Without emulator or target, the test is skipped and says so; under CI it fails.
+/// Without emulator or target, the test is skipped with a message; in CI it fails.
 fn is_available() -> bool {
     let emulator = Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).status();
     let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output().unwrap();
@@ -36,7 +36,7 @@ fn is_available() -> bool {
     is_available
 }
 
-/// What the image writes for a table under this load.
+/// The image's output for a table under this load.
 fn on_the_cortex_m3(load_n: f64) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware/bench");
     let build = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))

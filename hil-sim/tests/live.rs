@@ -1,4 +1,4 @@
-//! What changes while a scene plays, tick by tick: a layer's gain, a scene that takes another's place.
+//! Changes while a scene plays, tick by tick: a layer's gain, and the replacement of the scene.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use crate::script;
@@ -50,8 +50,8 @@ fn amplitude(record: &RigTick<Status>) -> u16 {
     record.status.telemetry.dac_code.unsigned_abs()
 }
 
-/// Ticks from the one that takes the last byte of the command to the one in which the DAC has what it asks for, for
-/// every phase of the touch source. Half the friction is less voltage, but no less than half as much.
+/// Ticks from the last byte of the command until the DAC has the requested code, over all phases of the touch source.
+/// Half the friction needs less voltage, but no less than half.
 fn ticks_to_dac(bulk_frames: usize) -> u64 {
     let mut most = 0;
     for phase in 0..10 {
@@ -98,8 +98,8 @@ fn a_gain_is_at_the_dac_within_a_millisecond_on_an_idle_line_and_two_during_an_u
     assert!(busy <= 80, "{busy} ticks");
 }
 
-/// What two boards under the same finger do, one playing `before` and one `after` from the start, against a third on
-/// which `after` takes the place of `before` while it plays: the tick of the swap, and the three at each tick.
+/// Three boards under the same finger: one plays `before`, one plays `after` from the start, and one swaps `before` for
+/// `after` while it plays. Has the tick of the swap, and the three boards at each tick.
 struct Swap {
     swap: usize,
     before: Vec<RigTick<Status>>,
@@ -180,7 +180,7 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
     }
 }
 
-/// Under a slow slew limit the voltage goes straight from where the old scene had it to where the new one wants it.
+/// Under a slow slew limit, the voltage ramps directly from the old scene's value to the new scene's.
 #[test]
 fn the_envelope_goes_from_one_scene_to_the_other_at_its_slew_limit() {
     let header = Header { slew_v_per_s: 1e4, ..HEADER };
@@ -196,7 +196,7 @@ fn the_envelope_goes_from_one_scene_to_the_other_at_its_slew_limit() {
     }
 }
 
-/// Carrier edges keep their distance over the swap; what changes is the amplitude.
+/// Carrier edges keep their spacing across the swap; only the amplitude changes.
 #[test]
 fn the_carrier_goes_on_over_the_swap() {
     let (before, after) = (scene(&HEADER, &[constant(0.02)]), scene(&HEADER, &[constant(0.005)]));
@@ -209,7 +209,7 @@ fn the_carrier_goes_on_over_the_swap() {
     }
 }
 
-/// The finger in the world is the committed scene's, also once the next upload has begun: it waits for the commit.
+/// The world's finger is the committed scene's, even once the next upload has begun: it waits for the commit.
 #[test]
 fn a_commit_and_the_next_upload_in_one_tick_leave_no_old_finger() {
     let config = RigConfig { baud: 20_000_000, ..config() };
@@ -229,7 +229,7 @@ fn a_commit_and_the_next_upload_in_one_tick_leave_no_old_finger() {
     assert!((felt_n - 0.51).abs() < 1e-3, "{felt_n} N");
 }
 
-/// A line that is slower than what is asked for: telemetry is left out, and what comes is not old.
+/// On a line that is too slow for the requested rate, telemetry is omitted, and the rest is recent.
 #[test]
 fn telemetry_on_a_slow_line_stays_fresh() {
     let config = RigConfig { baud: 9_600, ..config() };

@@ -13,7 +13,7 @@ const LINE_TICKS: u32 = 20_000;
 /// Bytes that the line takes in a tick at 2 Mbaud.
 const LINE_BYTES: usize = 5;
 
-/// Longest time for which the enable may be high after ready has risen or the switch was closed, us: a look at the
+/// Longest time for which the enable may be high after ready has risen or the switch was closed, us: one read of the
 /// inputs, and the enable's own fall.
 const REFUSED_MAX_US: u32 = 2;
 
@@ -22,9 +22,9 @@ struct Person {
     tests_line: bool,
     said: String,
     typed: VecDeque<u8>,
-    /// The host's side of the line's test, and the ticks that are left of it.
+    /// The host's side of the line test, and its remaining ticks.
     line: Option<(LineTest, u32)>,
-    /// What has arrived there.
+    /// The host's counts of received and missing blocks, and of damaged pieces.
     result: Option<[u32; 3]>,
 }
 
@@ -43,7 +43,7 @@ impl Person {
                 LINE_TEST
             }
             words if words.contains(SKIP) => SKIP,
-            // What is typed wrong is asked again.
+            // The script repeats a question after a mistyped answer.
             UNPLUGGED if !self.said.contains("unpluged") => {
                 self.said.push_str("> unpluged\n");
                 "unpluged"
@@ -140,7 +140,7 @@ fn a_person_skips_the_line() {
     assert!(!rig.port().said.contains("line_blocks"), "{}", rig.port().said);
 }
 
-/// What ends the script, and before what.
+/// Defects that end the script: before the first pulse, unless they show only later.
 #[test]
 fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once() {
     for (wrong, stop) in [
@@ -183,7 +183,7 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
     }
 }
 
-/// What is measured wrong is reported with the rest.
+/// A wrong measurement is reported with the others.
 #[test]
 fn each_wrong_measurement_fails_by_its_name() {
     for (wrong, names) in [
@@ -206,7 +206,7 @@ fn each_wrong_measurement_fails_by_its_name() {
     }
 }
 
-/// Every wrong board is in one of the tests above, or fails here.
+/// Every defect is in one of the tests above, or fails here.
 #[test]
 fn nothing_wrong_passes() {
     for (name, wrong) in Defect::ALL {

@@ -1,4 +1,4 @@
-//! The emulated boards do what the in-process board does, bit for bit: drives and bytes on the serial line.
+//! The emulated boards match the in-process board bit for bit: drives, and bytes on the serial line.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 #![allow(clippy::disallowed_types, clippy::disallowed_methods, reason = "the test runs an emulator")]
@@ -23,7 +23,7 @@ use script::{HEADER, Script, constant, record, samples, scene, scene_with_points
 
 const TICKS: u64 = 110_000;
 
-/// The journal of a board, from power-on, that `play` does something with.
+/// The journal of a board from power-on, with the actions of `play`.
 fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Script)) -> Journal {
     let mut script = Script::new(&RigConfig { board, ..RigConfig::default() }, stroke, seed);
     script.rig.start_journal();
@@ -34,7 +34,7 @@ fn journal(board: Board, stroke: Stroke, seed: u64, play: impl FnOnce(&mut Scrip
     journal
 }
 
-/// On a Cortex-M4F and on a Cortex-M33.
+/// Asserts that a Cortex-M4F and a Cortex-M33 give the outputs of the journal.
 fn assert_same(journal: &Journal) {
     assert!(journal.ticks() as u64 >= TICKS);
     for image in emulator::lockstep_images() {

@@ -1,5 +1,5 @@
-//! What holds in every tick of the in-process rig, whatever a host sends, a line damages and a world breaks: a million
-//! ticks each, and more in `cargo xtask soak faults`.
+//! Invariants of every tick of the in-process rig, for any host, line damage and world faults: a million ticks each,
+//! and more in `cargo xtask soak faults`.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::cell::RefCell;
@@ -19,7 +19,7 @@ const TICK_HZ: f32 = 40_000.0;
 const PEAK_V: f32 = 120.0;
 const SLEW_V_PER_S: f32 = 2e5;
 const HOST_TIMEOUT_TICKS: u64 = 10_000;
-/// A millisecond to act.
+/// Time to act, in ticks: a millisecond.
 const TO_ACT_TICKS: u64 = 40;
 /// Half a period of the slowest carrier here, 500 Hz.
 const HALF_PERIOD_TICKS: i64 = 40;
@@ -47,7 +47,7 @@ fn scene_of(waveform: Waveform, random: &mut Random) -> Vec<u8> {
     scene(&header, &[constant(random.pick([0.002, 0.01, 0.03]))])
 }
 
-/// Compares each tick with what must hold.
+/// Checks the invariants at each tick.
 #[derive(Default)]
 struct Monitor {
     ticks: u64,
@@ -136,7 +136,7 @@ fn some_command(random: &mut Random) -> Command {
     ])
 }
 
-/// A host that does anything, on a line that does anything, in a world that breaks.
+/// A random host on a line with random damage, in a world with random faults.
 fn anything(ticks: u64, seed: u64) -> Rc<RefCell<Monitor>> {
     let mut random = Random::new(seed);
     let (mut script, monitor) = watched(seed);
@@ -186,7 +186,7 @@ fn check_anything(ticks: u64, seed: u64) {
     let monitor = anything(ticks, seed);
     let monitor = monitor.borrow();
     assert!(monitor.ticks >= ticks);
-    // Nothing would be shown by a board that is never active, or always.
+    // A board that is never, or always, in a state would prove nothing.
     assert!(monitor.states.iter().all(|ticks_in| ticks_in * 200 > ticks), "{:?}", monitor.states);
     assert!(monitor.driven_ticks * 20 > ticks, "{} ticks were driven", monitor.driven_ticks);
 }
@@ -215,7 +215,7 @@ enum FoundBy {
     HalfOfTicks,
 }
 
-/// Ticks from a hard fault of one kind to the end of the one that puts zero out, the most of many times.
+/// Largest number of ticks, of many trials, from a hard fault of one kind to the end of the tick that outputs zero.
 fn ticks_to_off(found_by: FoundBy, ticks: u64, seed: u64) -> u64 {
     let mut random = Random::new(seed);
     let (mut script, monitor) = watched(seed);
@@ -293,7 +293,7 @@ fn the_output_is_off_within_1_5_ms_of_a_dac_that_holds_many_codes() {
     check_time_to_off(FoundBy::HalfOfTicks, SOAK_TICKS, 6);
 }
 
-/// What a host at random lacks to reach Active.
+/// The condition for Active that a random host does not meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Without {
     /// Nothing.
@@ -304,7 +304,8 @@ enum Without {
     ArmCommand,
 }
 
-/// All that a host can send, at random, for so many ticks. Returns the ticks in Active, and those that were driven.
+/// Sends messages of every kind at random for `ticks` ticks. Returns the number of ticks in Active, and of driven
+/// ticks.
 fn host_at_random(ticks: u64, seed: u64, without: Without) -> (u64, u64) {
     let mut random = Random::new(seed);
     let (mut script, monitor) = watched(seed);
@@ -336,7 +337,8 @@ fn host_at_random(ticks: u64, seed: u64, without: Without) -> (u64, u64) {
     (monitor.states[usize::from(State::Active.number())], monitor.driven_ticks)
 }
 
-/// A host at random never drives without this, and does drive with it: in a tenth of the ticks as a control.
+/// Asserts that a random host never drives without this condition. As a control, a tenth of the ticks with it must
+/// drive.
 fn check_never_active(ticks: u64, seed: u64, without: Without) {
     let (active_ticks, driven_ticks) = host_at_random(ticks / 10, seed, Without::Nothing);
     assert!(active_ticks > 0 && driven_ticks > 0, "{active_ticks} ticks in Active, {driven_ticks} driven");

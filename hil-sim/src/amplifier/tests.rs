@@ -168,7 +168,7 @@ fn values_out_of_range_are_refused_by_name() {
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 
-/// The amplifier, after it has put out a constant voltage for long.
+/// An amplifier that has output a constant voltage for a long time.
 fn driven_long(config: AmplifierConfig, dac_code: i16) -> Amplifier {
     let mut amplifier = amplifier(config);
     for _ in 0..4_000 {

@@ -58,7 +58,7 @@ pub enum TouchEvent {
     Move = 1,
     /// The finger has lifted.
     Up = 2,
-    /// The module does not trust its measurement.
+    /// The module marks its measurement as invalid.
     Invalid = 3,
 }
 

@@ -216,7 +216,6 @@ impl Person {
 
 /// Speed of a touch over its largest, from its start at 0 to its end at 1: the minimum-jerk profile, at least
 /// [`LANDING_SHARE`] at both ends.
-/// [`LANDING_SHARE`] at both ends.
 fn profile(share: f64) -> f64 {
     let (_, rate) = minimum_jerk(share);
     LANDING_SHARE + (1.0 - LANDING_SHARE) * rate / PEAK_RATE

@@ -231,8 +231,8 @@ fn a_lift_arrives_whatever_is_lost() {
     assert_eq!(seen, [Touch::Up]);
 }
 
-/// A source that takes another's place samples at the ticks at which it would have sampled anyway, and reports a finger
-/// that was lifted meanwhile.
+/// A source that replaces another samples at the ticks at which it would have sampled from the start, and reports a
+/// finger that was lifted meanwhile.
 #[test]
 fn a_source_that_begins_later_samples_at_its_own_ticks() {
     let config = TouchConfig { jitter_rms_s: 0.0, ..TouchConfig::IDEAL };

@@ -1,4 +1,4 @@
-//! The one way from options to a simulated world.
+//! Builds the configuration of a simulated world from its options.
 
 use frixel_model::FrictionLaw;
 

@@ -1,11 +1,11 @@
-//! The emulated board's image, or a word on why there is none.
+//! The emulated board's image, or the reason why it is unavailable.
 #![allow(dead_code, unreachable_pub, clippy::panic, reason = "part of tests, which may fail, and use what they need")]
 
 use std::io::Write;
 
 use frixel_hil_sim::emulated::{EmulatedBoard, EmulatorError, Image};
 
-/// The image. Where emulator or target are missing, the test is skipped with a word; under CI it fails.
+/// The image. Without emulator or target, the test is skipped with a message; in CI it fails.
 pub fn image() -> Option<Image> {
     built(EmulatedBoard::Mps2An386)
 }

@@ -20,7 +20,7 @@ const SWITCH_TIME: Duration = Duration::from_millis(50);
 /// The friction of a scene that most tests play.
 pub(super) const CONSTANT: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.9\n";
 
-/// Stripes as wide as a finger tells apart, from nothing to nearly all that the board can give.
+/// Stripes just wide enough for a finger to distinguish, from zero to nearly the largest friction of the board.
 pub(super) const GRATING: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 10\n\
      low_n = 0.0\nhigh_fraction = 0.9\n";
 
@@ -95,7 +95,7 @@ impl Bench {
         Self { rig: Rc::new(RefCell::new(rig)), records: Rc::default() }
     }
 
-    /// Does something with the rig.
+    /// Runs `work` on the rig.
     pub(super) fn with<R>(&self, work: impl FnOnce(&mut PicoRig) -> R) -> R {
         work(&mut self.rig.borrow_mut())
     }

@@ -10,17 +10,17 @@ use frixel_wire::message::Refusal;
 use super::bench::{Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;
 
-/// Ticks that read a broken part until its fault, as `docs/board/safety.md` has them: the ready line, twice, the
-/// monitor (0.4 ms), and the arm switch (0.8 ms).
+/// Ticks that read a broken part until its fault, by `docs/board/safety.md`: the ready line (two samples), the monitor
+/// (0.4 ms) and the arm switch (0.8 ms).
 const READY_TICKS: u32 = 2;
 const MONITOR_TICKS: u32 = 3;
 const SWITCH_TICKS: u32 = 6;
 /// Instructions of a tick after which it has read monitor, ready line and switch.
 const READ_AFTER: u32 = 2_000;
 
-/// From a broken part to zero, if the fault is that of the last of so many ticks that read it: the first one of them is
-/// the next, and the last one, which computes no friction any more, disables the amplifier and clears the DAC in its
-/// first half.
+/// Longest time from a defect to zero output, for a fault at the last of `reading_ticks` ticks that read the part. The
+/// first of these is the next tick. The last one computes no friction; it disables the amplifier and clears the DAC in
+/// its first half.
 fn zero_deadline(reading_ticks: u32) -> Duration {
     reading_ticks * TICK + TICK / 2
 }
@@ -29,7 +29,7 @@ fn try_to_play(host: &mut Host) -> Result<(), DeviceError> {
     frixel_play::start(host, &program(CONSTANT), &mut ignore_progress)
 }
 
-/// Plays, breaks something, and expects that the board stops with a fault at the last of so many ticks that read it.
+/// Plays a scene, breaks a part, and expects a fault at the last of `reading_ticks` ticks that read it.
 fn check_fault(broken: BrokenInputs, fault: Fault, reading_ticks: u32) {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
@@ -60,8 +60,8 @@ fn a_monitor_that_shows_nothing_stops_the_output() {
     check_fault(broken, Fault::Monitor, MONITOR_TICKS);
 }
 
-/// A single reading that is disturbed makes up for itself in the next ticks, so that many of them do not add up. With a
-/// monitor that is a tick late, no tick would be left to make up for them.
+/// The correct readings after a single disturbed one compensate it, so that many of them do not add up. With a monitor
+/// that is a tick late, no correct reading would be left to compensate them.
 #[test]
 fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
     let Some(image) = emulator::pico_image() else { return };
@@ -105,7 +105,7 @@ fn a_switch_that_is_welded_from_power_on_does_not_arm() {
     assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::ArmSwitch, .. }), "{refused}");
 }
 
-/// A DAC that is not there when the board arms is a fault, and one that comes later plays.
+/// A DAC without supply is a fault when the board arms; once powered, it plays.
 #[test]
 fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
     let Some(image) = emulator::pico_image() else { return };
@@ -126,7 +126,7 @@ fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
     bench.start(&mut host, CONSTANT);
 }
 
-/// A DAC whose answers never come, as with a broken wire.
+/// A DAC that never answers, as with a broken wire.
 #[test]
 fn a_dac_that_does_not_answer_is_a_fault() {
     let Some(image) = emulator::pico_image() else { return };

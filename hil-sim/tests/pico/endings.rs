@@ -1,4 +1,4 @@
-//! A play that ends in any way at any instruction: the output is zero in time, and nothing drives after the next start.
+//! Plays that end in any way, at any instruction: the output is zero in time, and stays zero after the next start.
 
 use std::time::Duration;
 
@@ -23,20 +23,20 @@ const TICK_CYCLES: u32 = 200_000_000 / BOARD.tick_hz;
 /// Instructions between a frame and the next, at least: one takes 25 / 16 cycles at most, as an average over a tick.
 const INSTRUCTIONS: u32 = TICK_CYCLES * 16 / 25;
 
-/// How a play ends.
+/// The way in which a play ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     /// The firmware panics.
     Panic,
     /// The processor reads an instruction where there is no memory.
     HardFault,
-    /// Nothing is carried out any more, interrupts included.
+    /// The core stops, including its interrupts.
     Hang,
-    /// The main loop does nothing any more.
+    /// The main loop hangs.
     HangingMainLoop,
     /// A person presses the reset button.
     RunPin,
-    /// The power is cut, and comes again.
+    /// The power is cut, and returns.
     PowerCut,
 }
 
@@ -44,7 +44,7 @@ impl Ending {
     const ALL: [Self; 6] =
         [Self::Panic, Self::HardFault, Self::Hang, Self::HangingMainLoop, Self::RunPin, Self::PowerCut];
 
-    /// Lets it happen now.
+    /// Causes it now.
     fn happen(self, rig: &mut PicoRig, seed: u32) {
         match self {
             Self::Panic => assert!(rig.jump_to("boot5never").unwrap(), "the image has a function that panics"),
@@ -68,7 +68,7 @@ impl Ending {
         }
     }
 
-    /// What the next hello says.
+    /// Reset cause and fault in the next hello.
     fn reported(self) -> (ResetCause, Option<Fault>) {
         match self {
             Self::Panic => (ResetCause::Software, Some(Fault::Panic)),
@@ -80,7 +80,7 @@ impl Ending {
     }
 }
 
-/// Plays, lets the play end so at a random instruction, and returns the hello of the next start.
+/// Plays, ends the play at a random instruction, and returns the hello of the next start.
 fn end_play(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
     let host = bench.play(CONSTANT);
     for _ in 0..random.below(20) {
@@ -117,8 +117,7 @@ fn end_play(bench: &Bench, ending: Ending, random: &mut Random) -> Hello {
     *bench.connect().hello()
 }
 
-/// Expects that the firmware itself disabled the amplifier and cleared the DAC, before the start that lets go of all
-/// pins.
+/// Expects that the firmware disabled the amplifier and cleared the DAC before the start that releases all pins.
 fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
     let events = bench.take_events();
     assert!(events.is_sorted_by_key(|stamped| stamped.at), "{ending:?}: {events:?}");
@@ -129,14 +128,14 @@ fn zeroed_by_firmware(bench: &Bench, ending: Ending) {
     }
 }
 
-/// Lets plays end so, at random instructions, each on a board that was just switched on.
+/// Ends plays at random instructions, each on a board that was just switched on.
 fn end_plays(image: &Image, ending: Ending, times: u64) {
     for seed in 0..times {
         let hello = end_play(&Bench::new(image), ending, &mut Random::new(1_000 * ending as u64 + seed));
         let expected = (ending.reported().0, ending.reported().1, State::Disarmed);
         assert_eq!((hello.reset_cause, hello.last_fault, hello.state), expected, "{ending:?}, seed {seed}");
     }
-    // A soak that is stopped has said how far it came.
+    // Shows the progress of a soak that is stopped early.
     println!("{ending:?}: {times} plays ended as they must");
 }
 
@@ -169,8 +168,10 @@ at_any_of_a_hundred_instructions! {
     a_hanging_main_loop_at_any_instruction_leaves_the_output_at_zero: Ending::HangingMainLoop, 20;
 }
 
-/// The image has given its watchdog the ring oscillator, which goes on without the crystal. That the watchdog counts
-/// while the chip's clock stands still is the rig's assumption, and no data sheet's: this says nothing of a board.
+/// The image clocks its watchdog from the ring oscillator, which continues without the crystal.
+///
+/// The rig assumes that the watchdog counts while the chip's clock stands still. No data sheet states this, so the test
+/// does not verify it for a real board.
 #[test]
 fn the_watchdog_is_given_the_ring_oscillator() {
     let Some(image) = emulator::pico_image() else { return };

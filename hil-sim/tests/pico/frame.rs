@@ -15,14 +15,14 @@ use crate::emulator;
 /// From the last report to zero: 40 ms until it is stale, the tick that begins meanwhile, and the one that puts out
 /// zero.
 const ZERO_WITHIN: Duration = Duration::from_millis(40).saturating_add(TICK.saturating_mul(2));
-/// From a frame that works again to the drive: a pause of the driver of 100 ms, at most 50 until it has discarded what
-/// waits, and 60 until reports have come.
+/// Time from a repaired frame to the drive: a pause of the driver of 100 ms, at most 50 until it has discarded waiting
+/// messages, and 60 until reports have arrived.
 const BACK_WITHIN: Duration = Duration::from_millis(210);
-/// How long a frame stays out of order: two pauses of the driver, and a half.
+/// Time for which a frame is broken: two and a half pauses of the driver.
 const BROKEN_FOR: Duration = Duration::from_millis(250);
 /// Bytes of a report of one finger on the bus.
 const REPORT_LEN: u32 = 21;
-/// Where the finger slides, in metres from the top edge, and how far from there a place may be.
+/// Distance of the finger from the top edge, m, and tolerance of its place.
 const PLACE_Y_M: f32 = 0.03;
 const PLACE_TOLERANCE_M: f32 = 1e-3;
 /// Number of the order that is a track.
@@ -56,8 +56,8 @@ fn comes_back(bench: &Bench, host: &mut Host) {
     }
 }
 
-/// The frame is out of order for a while: the output falls to zero in time and stays there, the board stays up, and
-/// once the frame is repaired it drives again. Returns what happened on the wires while the frame was out of order.
+/// Breaks the frame for a while: the output falls to zero in time and stays there, the board does not restart, and it
+/// drives again once the frame is repaired. Returns the events on the wires while the frame was broken.
 fn break_and_repair(
     bench: &Bench,
     host: &mut Host,
@@ -207,7 +207,7 @@ fn a_report_that_is_cut_off_moves_no_finger() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);
     for bytes in 0..REPORT_LEN {
-        // What the frame is asked at a restart is answered, so that a report is cut off.
+        // Wait until the set-up after a restart is over, so that a report is cut off.
         let begin = bench.now();
         while frame(&bench, |frame| !frame.module().is_enabled() || frame.module().waiting() > 0) {
             assert!(bench.now().saturating_sub(begin) <= BACK_WITHIN, "the frame is not set up");

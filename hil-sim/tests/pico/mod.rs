@@ -1,4 +1,4 @@
-//! The image of the Pico, unmodified, on an emulator that others wrote (`hil-sim/pico`).
+//! The unmodified image of the Pico, on a third-party emulator (`hil-sim/pico`).
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

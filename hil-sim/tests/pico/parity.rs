@@ -8,10 +8,10 @@ use super::bench::{Bench, GRATING};
 use super::twin::Twin;
 use crate::emulator;
 
-/// Ticks that are compared at least, from the first code on that is not zero.
+/// Smallest number of compared ticks, from the first nonzero code on.
 const TICKS: usize = 2_400;
 
-/// The codes from the first on that is not zero.
+/// The codes from the first nonzero one on.
 fn driven(codes: impl IntoIterator<Item = i16>) -> Vec<i16> {
     codes.into_iter().skip_while(|code| *code == 0).collect()
 }

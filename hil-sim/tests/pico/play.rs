@@ -16,10 +16,10 @@ use crate::emulator;
 
 /// Longest time for which SYNC may be low. 24 clocks of 6.25 MHz take 3.84 us.
 const FRAME_MAX: Duration = Duration::from_micros(5);
-/// How far the distance of two frames may be from a tick: two cycles of the core.
+/// Largest deviation of the time between two frames from a tick: two cycles of the core.
 const JITTER_MAX: Duration = Duration::from_nanos(10);
 /// Longest time from a new code to the reading of the monitor. The ADC has sampled it 2 us before, or 4; the supervisor
-/// bears 2 us of the newest code.
+/// tolerates 2 us of the newest code.
 const MONITOR_READ_MAX: Duration = Duration::from_micros(4);
 
 /// The ends of the frames among events. Each has 24 clocks.
@@ -51,7 +51,7 @@ fn after_power_on_the_board_says_hello_and_its_output_is_zero() {
     assert!(frames(&events).len() > 1000);
 }
 
-/// Nothing has measured a board that has stored no limits.
+/// A board that has stored no limits was never measured.
 #[test]
 fn a_board_that_was_never_brought_up_drives_ten_volts_at_most() {
     let Some(image) = emulator::pico_image() else { return };

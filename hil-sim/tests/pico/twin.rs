@@ -1,9 +1,9 @@
-//! Session and ticker in this process, which are given what the emulated board was given, at the same ticks.
+//! Session and ticker in this process, with the inputs of the emulated board at the same ticks.
 //!
-//! A line, a main loop and a queue lie between the host and the Pico's tick, so the tick at which a report is heard,
+//! A line, a main loop and a queue lie between the host and the Pico's tick, so the tick at which a report is received,
 //! and the one at which its track is followed, depend on how busy the board is. Both are known: the emulator shows
 //! every order that the tick takes, and a track begins at the tick after the status that the main loop had when it
-//! heard the report.
+//! received the report.
 
 use std::collections::VecDeque;
 
@@ -15,8 +15,8 @@ use frixel_session::Session;
 
 use super::bench::BOARD;
 
-/// Ticks between a report and its track, at most: the one in which the main loop has it, and those that the queue
-/// holds.
+/// Largest number of ticks between a report and its track: the one in which the main loop has it, and those that the
+/// queue holds.
 const LAG_TICKS_MAX: u32 = 40;
 /// Steps of a commit, at most.
 const COMMIT_STEPS_MAX: u32 = 128;
@@ -28,16 +28,16 @@ const TRACK: u32 = 1;
 pub(super) struct Twin {
     session: Session<'static>,
     ticker: Ticker<'static>,
-    /// What the board has received and this one has not yet, frame by frame.
+    /// Frames that the emulated board has received, and this one has not yet.
     frames: VecDeque<Vec<u8>>,
-    /// The status after each tick, the first one being that before any.
+    /// The status after each tick, and first the one before any tick.
     statuses: Vec<Status>,
-    /// Gives what the monitor shows.
+    /// Computes the monitor's voltage.
     world: World,
 }
 
 impl Twin {
-    /// Gives a board after its start what another one was given, and returns its codes at every tick.
+    /// Replays the inputs of another board on a freshly started one, and returns its codes at every tick.
     pub(super) fn codes(watched: &Watched) -> Vec<i16> {
         Self::new(&watched.bytes).run(&watched.orders, watched.ticks)
     }
@@ -72,8 +72,7 @@ impl Twin {
         (1..=ticks).map(code).collect()
     }
 
-    /// Gives the ticker an order that the emulated board's tick took: the next one of the session, which has to be the
-    /// same.
+    /// Passes the session's next order to the ticker. It must equal the order that the emulated board's tick took.
     fn take(&mut self, expected: &AppliedOrder) {
         if expected.words[0] == HOST_HEARD {
             self.ticker.apply(Order::HostHeard);
@@ -96,7 +95,7 @@ impl Twin {
         loop {
             for _ in 0..COMMIT_STEPS_MAX {
                 self.session.poll(status);
-                // Nobody reads the answers.
+                // Discard the answers.
                 while self.session.transmit(&mut [0; 256]) > 0 {}
                 match self.session.next_order() {
                     None | Some(Order::HostHeard) => {}
@@ -109,7 +108,7 @@ impl Twin {
     }
 }
 
-/// The tick at which the track of an order begins. Where it lies in memory, the compiler decides; every other word is
+/// The tick at which the track of an order begins. Its offset in memory is the compiler's choice; every other word is
 /// the bits of a fraction, a small number, or a tick that is farther away.
 fn from_tick(order: &AppliedOrder) -> u32 {
     let lag = |word: &u32| order.tick.wrapping_sub(*word);

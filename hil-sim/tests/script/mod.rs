@@ -26,7 +26,7 @@ const COMMIT_TICKS_MAX: u32 = 128;
 /// Is called with every tick, and with the number of bytes that have arrived at the board.
 pub type Watch = Box<dyn FnMut(&RigTick<Status>, u64)>;
 
-/// A host that says what it wants and trusts the board.
+/// A host that sends commands, and relies on the board to accept them.
 pub struct Script {
     pub rig: Rig<'static>,
     pub watch: Option<Watch>,
@@ -41,7 +41,7 @@ impl Script {
         Self { rig, watch: None, sequence: 0, status: None }
     }
 
-    /// Asks who is there.
+    /// Sends a hello request.
     pub fn hello(&mut self) {
         let mut frame = [0; FRAME_MAX_LEN];
         self.rig.send(payload::hello_request_frame(&mut frame).unwrap());
@@ -102,7 +102,7 @@ impl Script {
         self.rig.world_mut().start_stroke();
     }
 
-    /// Runs, and says now and then that the host is there.
+    /// Runs for `ticks` ticks, with pings.
     pub fn run(&mut self, ticks: u64) {
         for tick in 0..ticks {
             if tick.is_multiple_of(PING_TICKS) {
@@ -129,7 +129,7 @@ impl Script {
         self.step();
     }
 
-    /// Runs in silence.
+    /// Runs for `ticks` ticks without pings.
     pub fn steps(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.step();

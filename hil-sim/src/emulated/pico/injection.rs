@@ -12,7 +12,7 @@ impl PicoRig {
         self.process.request(Request::PowerCycle, &[seed]).map(drop)
     }
 
-    /// Pulls the RUN pin low and lets it go.
+    /// Pulls the RUN pin low and releases it.
     pub fn pull_run_pin(&mut self) -> Result<(), EmulatorError> {
         self.process.request(Request::RunPin, &[]).map(drop)
     }

@@ -45,7 +45,7 @@ pub(super) enum Ended {
 /// Why a board starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StartCause {
-    /// The power came.
+    /// Power-on.
     Power,
     /// The RUN pin was released.
     RunPin,

@@ -64,7 +64,7 @@ fn touches(
     touches.map(|touch| touch.iter().flatten().copied().collect()).collect()
 }
 
-/// A part of the values is below this one.
+/// The quantile `part` of the values.
 fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values[(part * (values.len() - 1) as f64) as usize]
@@ -151,7 +151,7 @@ fn touches_have_the_statistics_of_recorded_ones() {
     }
 }
 
-/// Only the touches at 200 mm/s and above are too long for it, and end earlier; they accelerate as much.
+/// On a small screen, only touches at 200 mm/s and above are too long, and end earlier; their acceleration is the same.
 #[test]
 fn touches_have_the_statistics_of_recorded_ones_on_a_small_screen() {
     for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
