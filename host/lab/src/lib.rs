@@ -3,7 +3,6 @@
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.
 //! - [`simulate`]: the board, world, stroke and finger of a play.
-//! - [`board_costs`]: memory, table and line bytes that a board needs for a scene.
 //! - [`scenario`]: what happens to a board while a scene plays, on any rig, and what has to be seen of it.
 //! - [`score`]: how faithfully simulated fingers felt a scene.
 //! - [`sweep`]: studies of many simulated fingers, scenes, screens and values of a scene's fields.
@@ -24,7 +23,6 @@ pub mod hash;
 pub mod input;
 pub mod model_csv;
 pub mod recording;
-mod rehearsal;
 pub mod scenario;
 pub mod score;
 pub mod simulate;
@@ -34,4 +32,3 @@ pub mod sweep;
 pub mod table;
 
 pub use generated_stroke::GeneratedStroke;
-pub use rehearsal::{RehearsalError, board_costs};

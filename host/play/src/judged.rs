@@ -1,10 +1,12 @@
-//! Judges programs on the simulated board.
+//! What the simulated board needs for a program, and what a person feels of it.
 
+use frixel_driver::{Device, PollingLink, ignore_progress};
+use frixel_felt::check::BoardCosts;
 use frixel_felt::judge::{self, Advice, Judgement};
-use frixel_hil_sim::{Board, RigConfig, TouchConfig, WorldOptions};
+use frixel_hil_sim::{Board, BoardMemory, Point, Rig, RigConfig, Stroke, TouchConfig, WorldOptions};
 use frixel_scene::Program;
 
-use crate::{GoesOn, Simulation, SimulationError, simulate};
+use crate::{GoesOn, RigStream, Simulation, SimulationError, load, simulate};
 
 /// Seed of all that is random in the world, for every element and size.
 const SEED: u64 = 1;
@@ -30,4 +32,16 @@ pub fn judge(
         let simulation = Simulation::of_stroke(*rig, stroke.clone(), SEED);
         Ok(simulate(program, &simulation, None, goes_on)?.samples())
     })
+}
+
+/// Memory, table and line bytes that the simulated board of `rig` needs for a program that was compiled for it. Uploads
+/// the program once, without playing it.
+pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, SimulationError> {
+    let mut memory = BoardMemory::new();
+    // The stroke never starts.
+    let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0)?;
+    let stream = RigStream::new(Rig::new(&mut memory, rig, stroke, SEED)?);
+    let mut device = Device::connect(PollingLink::new(stream))?;
+    let wire_bytes = load(&mut device, program, &mut ignore_progress)?;
+    Ok(BoardCosts::of(program, rig, wire_bytes))
 }

@@ -11,6 +11,7 @@
 //! - [`RigStream`]: the line to a board in a simulated world, on its clock.
 //! - [`simulate`]: plays a program on the simulated board of this process under a simulated finger, in virtual time.
 //! - [`judge`]: judges a program by strokes that are simulated so.
+//! - [`board_costs`]: memory, table and line bytes that a board needs for a program.
 //! - [`Recorded`]: a link with a record of what the board plays.
 //!
 //! The crate opens no file, reads no clock and starts no thread: time is the link's clock. It compiles for
@@ -33,7 +34,7 @@ pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
 pub use frixel_felt::{GoesOn, TO_THE_END};
-pub use judged::{judge, judged_rig};
+pub use judged::{board_costs, judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;

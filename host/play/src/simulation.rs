@@ -6,7 +6,7 @@ use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, ig
 use frixel_felt::GoesOn;
 use frixel_felt::fidelity::{FidelitySample, ticks_per_sample};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
 use frixel_scene::Program;
 use frixel_wire::hello::Hello;
 use thiserror::Error;
@@ -51,6 +51,9 @@ pub enum SimulationError {
     /// The simulated world could not be built.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// The finger's stroke could not be built.
+    #[error(transparent)]
+    Stroke(#[from] StrokeError),
     /// The play failed.
     #[error(transparent)]
     Play(#[from] PlayError),

@@ -1,17 +1,15 @@
 //! What `frixel check` says of a scene.
 
-use frixel_driver::{Device, PollingLink, ignore_progress};
-use frixel_felt::check::{BoardCosts, SceneCheck};
+use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::{Advice, Judgement};
-use frixel_hil_sim::{BoardMemory, RigConfig};
-use frixel_play::{TO_THE_END, judge, judged_rig, load};
-use frixel_scene::{Program, Scene};
+use frixel_hil_sim::RigConfig;
+use frixel_play::{SimulationError, TO_THE_END, board_costs, judge, judged_rig};
+use frixel_scene::Scene;
 use serde_json::{Value, json};
 
 use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
 use crate::layers::layers;
-use crate::pointer_stream::PointerStream;
 use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
@@ -43,8 +41,10 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &config.for_drafts()) {
         // Not even the simulator plays it.
-        Err(HostError::Refused(_)) if program.is_draft() => return Ok(json!({ "ok": false, "problems": problems })),
-        costs => costs?,
+        Err(SimulationError::Play(_)) if program.is_draft() => {
+            return Ok(json!({ "ok": false, "problems": problems }));
+        }
+        costs => costs.map_err(HostError::Simulation)?,
     };
     let judgement = if is_judged {
         let rig = judged_rig(config.board, touch);
@@ -70,13 +70,4 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
 
 fn screen(scene: &Scene) -> Value {
     json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
-}
-
-/// What a simulated board needs for a program: uploads it once, without playing it.
-fn board_costs(program: &Program, config: &RigConfig) -> Result<BoardCosts, HostError> {
-    let mut memory = BoardMemory::new();
-    let mut device = Device::connect(PollingLink::new(PointerStream::new(&mut memory, config, 1)?))?;
-    let loaded = load(&mut device, program, &mut ignore_progress);
-    let wire_bytes = loaded.map_err(|error| HostError::Refused(error.into()))?;
-    Ok(BoardCosts::of(program, config, wire_bytes))
 }

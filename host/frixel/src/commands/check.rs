@@ -8,9 +8,8 @@ use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, weber_steps, weber_steps_text};
 use frixel_hil_sim::{Board, RigConfig, TouchConfig};
-use frixel_lab::board_costs;
 use frixel_layers::Header;
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_play::{TO_THE_END, board_costs, judge, judged_rig};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
@@ -70,7 +69,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     };
     let judgement = judge(&program, &judged_rig(rig.board, touch), Advice::Sought, TO_THE_END);
     let judgement = judgement.map_err(of_simulation)?;
-    let mut check = SceneCheck::of(&program, &rig.board.limits, &board_costs(&program, &rig)?, judgement);
+    let costs = board_costs(&program, &rig).map_err(of_simulation)?;
+    let mut check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
     check.notes.extend(files.outside().map(|path| {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")

@@ -34,7 +34,7 @@ pub(crate) fn of_play(port: &str, error: PlayError) -> anyhow::Error {
 pub(crate) fn of_simulation(error: SimulationError) -> anyhow::Error {
     match error {
         SimulationError::Play(error) => of_play("sim", error),
-        SimulationError::World(error) => error.into(),
+        error => error.into(),
     }
 }
 
