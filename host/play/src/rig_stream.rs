@@ -25,6 +25,8 @@ type Observer<'a> = Box<dyn FnMut(&RigTick) + 'a>;
 pub struct RigStream<'a, R> {
     rig: R,
     record: Record<'a>,
+    /// Bytes from the board that were received beside a read.
+    received: Vec<u8>,
 }
 
 /// The recorder, and the ticks that it has not got yet.
@@ -46,7 +48,7 @@ struct Record<'a> {
 impl<'a, R: BoardRig> RigStream<'a, R> {
     /// The line to a rig.
     pub fn new(rig: R) -> Self {
-        Self { rig, record: Record::default() }
+        Self { rig, record: Record::default(), received: Vec::new() }
     }
 
     /// Calls `observer` with every tick from the start of the record on.
@@ -63,7 +65,8 @@ impl<'a, R: BoardRig> RigStream<'a, R> {
     }
 
     fn ticks(&self, time: Duration) -> u64 {
-        (time.as_secs_f64() * f64::from(self.rig.board().tick_hz)).ceil() as u64
+        // A time that is above a whole number of ticks by rounding alone is that number.
+        (time.as_secs_f64() * f64::from(self.rig.board().tick_hz) - 1e-6).ceil().max(0.0) as u64
     }
 
     fn closed(&self, error: &RigError) -> LinkClosed {
@@ -81,7 +84,7 @@ impl<'a, R: BoardRig> RigStream<'a, R> {
             // The stroke starts in the tick in which the scene plays.
             let steps = self.rig.sees_board() && !self.record.is_started;
             let until = if steps { until_tick.min(self.rig.tick() + 1) } else { until_tick };
-            let Self { rig, record } = self;
+            let Self { rig, record, .. } = self;
             rig.run(until, buffer, &mut |tick| record.take(tick))?;
             let touch_frames = rig.take_touch_frames();
             if !touch_frames.is_empty() {
@@ -171,8 +174,8 @@ impl<R: BoardRig> Recorded for RigStream<'_, R> {
             return;
         }
         // Ticks that the rig has not told of yet. What is wrong with it was said, or is said at the next read.
-        let Self { rig, record } = self;
-        let _ = rig.run(rig.tick(), &mut Vec::new(), &mut |tick| record.take(tick));
+        let Self { rig, record, received } = self;
+        let _ = rig.run(rig.tick(), received, &mut |tick| record.take(tick));
         record.record_all_but(0);
     }
 }
@@ -183,6 +186,10 @@ impl<R: BoardRig> ByteStream for RigStream<'_, R> {
     }
 
     fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
+        if !self.received.is_empty() {
+            buffer.append(&mut self.received);
+            return Ok(());
+        }
         // The clock of an emulated board may stand still while its ticks pass. A read ends before its time then.
         let until_tick = self.rig.tick().saturating_add(self.ticks(wait));
         self.run(until_tick, buffer).map_err(|error| self.closed(&error))

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, PollingLink, ignore_progress};
-use frixel_play::{PlayError, Player, load};
+use frixel_hil_sim::BoardRig as _;
+use frixel_play::{PlayError, Player, RigStream, load};
 use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::payload::hello_request_frame;
@@ -24,11 +25,14 @@ pub(super) struct Failure {
     pub(super) is_expected: bool,
 }
 
+/// A board at the end of the scenario's line.
+type ScenarioPlayer<'r> = Player<PollingLink<RigStream<'r, ScenarioLine<'r>>>>;
+
 pub(super) struct Host<'s, 'r> {
     scenario: &'s Scenario,
     programs: &'s Programs,
     line: ScenarioLine<'r>,
-    player: Option<Player<PollingLink<ScenarioLine<'r>>>>,
+    player: Option<ScenarioPlayer<'r>>,
     failures: Vec<Failure>,
     /// Line of the last command.
     last_line: usize,
@@ -60,7 +64,7 @@ impl<'s, 'r> Host<'s, 'r> {
 
     /// Plays the scene, then does what the scenario says, to its end.
     pub(super) fn run(&mut self) {
-        let tick_hz = self.line.tick_hz();
+        let tick_hz = self.line.board().tick_hz;
         match self.connect() {
             Ok(()) => self.act(&Action::Play),
             Err(failure) => self.failed("the connection", failure),
@@ -96,7 +100,7 @@ impl<'s, 'r> Host<'s, 'r> {
     }
 
     fn connect(&mut self) -> Result<(), CommandFailure> {
-        let link = PollingLink::new(self.line.clone());
+        let link = PollingLink::new(RigStream::new(self.line.clone()));
         self.player = Some(Player::new(Device::connect(link)?));
         Ok(())
     }
@@ -104,7 +108,7 @@ impl<'s, 'r> Host<'s, 'r> {
     /// Lets time pass, in which the program goes on if it is connected.
     fn wait_until(&mut self, ticks: u64) {
         while self.line.ticks() < ticks && !self.line.has_ended() {
-            let left = Duration::from_secs(ticks - self.line.ticks()) / self.line.tick_hz();
+            let left = Duration::from_secs(ticks - self.line.ticks()) / self.line.board().tick_hz;
             match &mut self.player {
                 Some(player) => {
                     if let Err(error) = player.wait(left) {
@@ -123,7 +127,7 @@ impl<'s, 'r> Host<'s, 'r> {
                 return self.connect();
             }
             Action::Hang { ms } => {
-                self.line.pass_to(self.line.ticks() + ticks_of(*ms, self.line.tick_hz()));
+                self.line.pass_to(self.line.ticks() + ticks_of(*ms, self.line.board().tick_hz));
                 return Ok(());
             }
             Action::Die => {
@@ -142,7 +146,12 @@ impl<'s, 'r> Host<'s, 'r> {
         }
         let program = |scene: &str| self.programs.get(scene).cloned();
         let Some(player) = &mut self.player else { return Err(CommandFailure::NotConnected) };
-        perform_with(player, action, &self.scenario.scene, &program)
+        perform_with(player, action, &self.scenario.scene, &program)?;
+        if matches!(action, Action::Play) {
+            // The stroke begins anew with each play, not with the first one of a connection alone.
+            self.line.start_stroke();
+        }
+        Ok(())
     }
 
     /// A program that cannot go on ends: it lets go of its connection.
@@ -157,14 +166,14 @@ impl<'s, 'r> Host<'s, 'r> {
             self.player = None;
         }
         self.line.note(format!("{what} failed: {sentence}"));
-        let tick = self.line.rig_tick();
+        let tick = self.line.tick();
         self.failures.push(Failure { line: self.last_line, what: what.to_owned(), tick, sentence, is_expected: false });
     }
 }
 
 /// What a connected host does.
 fn perform_with(
-    player: &mut Player<PollingLink<ScenarioLine<'_>>>,
+    player: &mut ScenarioPlayer<'_>,
     action: &Action,
     scene: &str,
     program: &dyn Fn(&str) -> Option<Program>,

@@ -1,14 +1,12 @@
-//! The host's end of the line to a rig: it damages bytes, causes the scenario's faults at their ticks, and passes every
-//! tick to the checks.
+//! A rig behind its line to the host, which damages bytes, causes the scenario's faults at their ticks, and passes
+//! every tick to the checks.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use std::time::Duration;
 
-use frixel_driver::{ByteStream, LinkClosed};
-use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, WorldFault};
-use frixel_play::Recorded;
+use frixel_hil_sim::{Board, BoardRig, RigError, RigFault, RigTick, WorldFault};
 use frixel_scene::{Cause, Program, Scenario};
 use frixel_wire::dac_code::DacCode;
 
@@ -18,13 +16,11 @@ use super::host::Failure;
 use super::state_history::StateHistory;
 use super::{ScenarioError, ScenarioOutcome, TimelineEntry, ticks_of};
 
-/// The line to a rig. Clones are the same line: a host that connects again has another one.
-pub(super) struct ScenarioLine<'r>(Rc<RefCell<Inner<'r>>>, ());
-
-impl Clone for ScenarioLine<'_> {
-    fn clone(&self) -> Self {
-        Self(Rc::clone(&self.0), ())
-    }
+/// A rig behind the line that a scenario damages. Clones are the same line: a host that connects again has another one.
+#[derive(Clone)]
+pub(super) struct ScenarioLine<'r> {
+    inner: Rc<RefCell<Inner<'r>>>,
+    board: Board,
 }
 
 struct Inner<'r> {
@@ -63,7 +59,8 @@ struct PlannedFault {
 
 impl<'r> ScenarioLine<'r> {
     pub(super) fn new(scenario: &Scenario, program: &Program, rig: &'r mut dyn BoardRig) -> Self {
-        let tick_hz = rig.board().tick_hz;
+        let board = *rig.board();
+        let tick_hz = board.tick_hz;
         let ticks = |ms: f64| ticks_of(ms, tick_hz);
         let mut faults: Vec<_> = scenario
             .faults
@@ -92,12 +89,12 @@ impl<'r> ScenarioLine<'r> {
             timeline: Vec::new(),
             error: None,
         };
-        Self(Rc::new(RefCell::new(inner)), ())
+        Self { inner: Rc::new(RefCell::new(inner)), board }
     }
 
     /// Makes this time zero: faults, and expectations without an `after`, count from now on.
     pub(super) fn begin_time(&self) {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         let tick = inner.rig.tick();
         inner.first_tick = Some(tick);
         inner.checks.begin_time(tick);
@@ -108,27 +105,18 @@ impl<'r> ScenarioLine<'r> {
 
     /// Ticks since time zero.
     pub(super) fn ticks(&self) -> u64 {
-        let inner = self.0.borrow();
+        let inner = self.inner.borrow();
         inner.rig.tick() - inner.first_tick.unwrap_or(inner.rig.tick())
-    }
-
-    /// Ticks on the rig's clock.
-    pub(super) fn rig_tick(&self) -> u64 {
-        self.0.borrow().rig.tick()
-    }
-
-    pub(super) fn tick_hz(&self) -> u32 {
-        self.0.borrow().tick_hz
     }
 
     /// Whether the rig has ended.
     pub(super) fn has_ended(&self) -> bool {
-        self.0.borrow().error.is_some()
+        self.inner.borrow().error.is_some()
     }
 
     /// Lets time pass up to this tick since time zero, in which nobody reads.
     pub(super) fn pass_to(&self, ticks: u64) {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         let until = inner.first_tick.unwrap_or_default() + ticks;
         // An error is kept, and ends the scenario.
         let _ = inner.advance(until, false);
@@ -136,14 +124,14 @@ impl<'r> ScenarioLine<'r> {
 
     /// Sends bytes of another program on this line.
     pub(super) fn inject(&self, bytes: &[u8]) {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         let tick = inner.rig.tick();
         inner.to_board.take(bytes, tick);
     }
 
     /// Lets the person press the arm switch anew.
     pub(super) fn press_switch(&self) {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         let until = inner.rig.press_switch() + inner.rig.tick();
         // An error is kept, and ends the scenario.
         let _ = inner.advance(until, false);
@@ -151,24 +139,24 @@ impl<'r> ScenarioLine<'r> {
 
     /// The host is killed, or another one starts.
     pub(super) fn set_dead(&self, is_dead: bool) {
-        self.0.borrow_mut().is_dead = is_dead;
+        self.inner.borrow_mut().is_dead = is_dead;
     }
 
     /// Writes into the timeline, now.
     pub(super) fn note(&self, what: impl Into<String>) {
-        self.0.borrow_mut().note(what);
+        self.inner.borrow_mut().note(what);
     }
 
     /// A command has ended: expectations may count from now on.
     pub(super) fn named_event(&self, name: Option<&str>) {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         let tick = inner.rig.tick();
         inner.checks.begin(name, tick);
     }
 
     /// What the scenario has shown, with the failures of the host.
     pub(super) fn outcome(self, scenario: &Scenario, failures: Vec<Failure>) -> Result<ScenarioOutcome, ScenarioError> {
-        let mut inner = self.0.borrow_mut();
+        let mut inner = self.inner.borrow_mut();
         if let Some((line, source)) = inner.error.take() {
             let file = line.map_or(scenario.file.clone(), |line| format!("{}:{line}", scenario.file));
             return Err(ScenarioError::Rig { file, source });
@@ -289,48 +277,46 @@ fn rig_fault(cause: Cause, board: &Board, voltage_max_v_peak: f32) -> Option<Rig
     }
 }
 
-fn closed(error: &RigError) -> LinkClosed {
-    LinkClosed { port: "the rig".to_owned(), reason: error.to_string() }
-}
-
-impl ByteStream for ScenarioLine<'_> {
-    fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
-        let mut inner = self.0.borrow_mut();
-        if !inner.is_dead {
-            let tick = inner.rig.tick();
-            inner.to_board.take(bytes, tick);
-            inner.deliver(tick).map_err(|error| closed(&error))?;
-        }
-        Ok(())
-    }
-
-    fn read(&mut self, buffer: &mut Vec<u8>, wait: Duration) -> Result<(), LinkClosed> {
-        let mut inner = self.0.borrow_mut();
-        let ticks = (wait.as_secs_f64() * f64::from(inner.tick_hz) - 1e-6).ceil().max(0.0);
-        let until = inner.rig.tick() + ticks as u64;
-        inner.advance(until, true).map_err(|error| closed(&error))?;
-        buffer.append(&mut inner.inbox);
-        Ok(())
-    }
-
-    fn now(&self) -> Duration {
-        self.0.borrow().rig.now()
-    }
-
+impl BoardRig for ScenarioLine<'_> {
     fn name(&self) -> &'static str {
         "the rig"
     }
-}
 
-impl Recorded for ScenarioLine<'_> {
-    type Recorder = ();
-
-    fn recorder_mut(&mut self) -> &mut () {
-        &mut self.1
+    fn board(&self) -> &Board {
+        &self.board
     }
 
-    fn begin(&mut self) -> Result<(), LinkClosed> {
-        self.0.borrow_mut().rig.start_stroke();
+    fn tick(&self) -> u64 {
+        self.inner.borrow().rig.tick()
+    }
+
+    fn now(&self) -> Duration {
+        self.inner.borrow().rig.now()
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), RigError> {
+        let mut inner = self.inner.borrow_mut();
+        if inner.is_dead {
+            return Ok(());
+        }
+        let tick = inner.rig.tick();
+        inner.to_board.take(bytes, tick);
+        inner.deliver(tick)
+    }
+
+    /// Passes each tick to the checks alone: a scenario records nothing.
+    fn run(&mut self, until_tick: u64, received: &mut Vec<u8>, _: &mut dyn FnMut(&RigTick)) -> Result<(), RigError> {
+        let mut inner = self.inner.borrow_mut();
+        inner.advance(until_tick, true)?;
+        received.append(&mut inner.inbox);
         Ok(())
+    }
+
+    fn cause(&mut self, fault: RigFault, ticks: u64) -> Result<(), RigError> {
+        self.inner.borrow_mut().rig.cause(fault, ticks)
+    }
+
+    fn start_stroke(&mut self) {
+        self.inner.borrow_mut().rig.start_stroke();
     }
 }
