@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use frixel_hil_sim::{Board, BoardMemory, BoardRig, Felt, NoiseConfig, Rig, RigConfig, RigError, RigFault, RigTick};
-use frixel_lab::scenario::{ScenarioError, ScenarioOutcome, programs, run, run_in_process, stroke_and_world};
+use frixel_lab::scenario::{ScenarioError, ScenarioOutcome, programs, run, run_in_process, simulation};
 use frixel_scene::{Action, Cause, Condition, Expectation, LineDamage, Scenario, Scene};
 use frixel_wire::dac_code::DacCode;
 
@@ -180,10 +180,9 @@ fn run_broken(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, how: Break)
     }
     let config = RigConfig::default();
     let programs = programs(&scenario, scenes, &config.board).unwrap();
-    let (stroke, world) = stroke_and_world(&scenario, &programs, config.world).unwrap();
     let (mut memory, mut spare) = (BoardMemory::new(), vec![]);
     spare.resize_with(scenario.resets(), BoardMemory::new);
-    let rig = Rig::new(&mut memory, &RigConfig { world, ..config }, stroke, scenario.seed).unwrap();
+    let rig = simulation(&scenario, &programs, &config).unwrap().rig(&mut memory).unwrap();
     run(&scenario, &programs, &mut Broken { rig: rig.with_spare_memories(&mut spare), how }).unwrap()
 }
 

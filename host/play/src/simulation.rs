@@ -6,7 +6,7 @@ use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, ig
 use frixel_felt::GoesOn;
 use frixel_felt::fidelity::{FidelitySample, ticks_per_sample};
 use frixel_felt::recorder::Recorder;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, WorldError};
+use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, StrokeError, World, WorldError};
 use frixel_scene::Program;
 use frixel_wire::hello::Hello;
 use thiserror::Error;
@@ -74,6 +74,21 @@ impl Simulation {
         Self { rig, stroke, seconds, seed, ticks_per_row, through_finger: true }
     }
 
+    /// The world of a board that is not this process's: with a finger of its own, or else the one that `program` is for.
+    pub fn world(&self, program: &Program) -> Result<World, SimulationError> {
+        let mut world = World::new(self.rig.world, self.stroke.clone(), self.seed)?;
+        world.set_finger(program.header.friction_law().map_err(PlayError::Finger)?);
+        Ok(world)
+    }
+
+    /// What records the play of `program`, until the last tick.
+    pub fn recorder(&self, program: &Program) -> Result<Recorder, PlayError> {
+        let board = &self.rig.board;
+        let ticks = (self.seconds * f64::from(board.tick_hz)).round() as u64;
+        let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, self.ticks_per_row)?;
+        Ok(if self.through_finger { recorder.through_finger() } else { recorder })
+    }
+
     /// The board, switched on, in its world.
     pub fn rig<'a>(&self, memory: &'a mut BoardMemory) -> Result<Rig<'a>, WorldError> {
         Rig::new(memory, &self.rig, self.stroke.clone(), self.seed)
@@ -107,11 +122,7 @@ pub fn simulate_by(
     feed: Option<Feed>,
     play: &mut dyn FnMut(&mut SimPlayer<'_>) -> Result<(), PlayError>,
 ) -> Result<Simulated, SimulationError> {
-    let board = &simulation.rig.board;
-    let ticks = (simulation.seconds * f64::from(board.tick_hz)).round() as u64;
-    let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, simulation.ticks_per_row);
-    let recorder = recorder.map_err(PlayError::Finger)?;
-    let recorder = if simulation.through_finger { recorder.through_finger() } else { recorder };
+    let recorder = simulation.recorder(program)?;
     let mut memory = BoardMemory::new();
     let stream = RigStream::new(simulation.rig(&mut memory)?);
     let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);

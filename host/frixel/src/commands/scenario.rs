@@ -9,12 +9,12 @@ use clap::ValueEnum;
 use frixel_hil_sim::World;
 #[cfg(unix)]
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
-use frixel_hil_sim::{Board, RigConfig, WorldConfig};
+use frixel_hil_sim::{Board, RigConfig};
 use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
 use frixel_lab::simulate::screen_m;
 use frixel_scene::{Scenario, Scene};
 
-use super::error::{at, of_finger};
+use super::error::at;
 use crate::input;
 #[cfg(unix)]
 use crate::rigs::EmulatedRig;
@@ -95,7 +95,7 @@ fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<
 fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs> {
     let programs = scenario::programs(scenario, scenes, board)?;
     if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {
-        let (stroke, _) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
+        let stroke = scenario::simulation(scenario, &programs, &RigConfig::of(*board))?.stroke;
         let name = format!("{}: the stroke", scenario.file);
         note_off_screen(&name, &stroke, screen_m(program), scenario.seconds).map_err(at(&scenario.file))?;
     }
@@ -106,11 +106,7 @@ fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board
 #[cfg(unix)]
 fn prepare(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<(Programs, World)> {
     let programs = programs(scenario, scenes, board)?;
-    let (stroke, config) = scenario::stroke_and_world(scenario, &programs, WorldConfig::of(board))?;
-    let mut world = World::new(config, stroke, scenario.seed)?;
-    if let Some(program) = programs.get(&scenario.scene) {
-        world.set_finger(program.header.friction_law().map_err(of_finger)?);
-    }
+    let world = scenario::world(scenario, &programs, board)?;
     Ok((programs, world))
 }
 

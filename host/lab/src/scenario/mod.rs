@@ -16,8 +16,9 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use frixel_hil_sim::{
-    BoardMemory, BoardRig, Point, Rig, RigConfig, RigError, Stroke, StrokeError, WorldConfig, WorldError, WorldOptions,
+    Board, BoardMemory, BoardRig, Point, RigConfig, RigError, Stroke, StrokeError, World, WorldOptions,
 };
+use frixel_play::{Simulation, SimulationError};
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
@@ -83,7 +84,7 @@ pub enum ScenarioError {
     },
     /// The world cannot be made.
     #[error(transparent)]
-    World(#[from] WorldError),
+    Simulation(#[from] SimulationError),
     /// The rig has ended, or cannot cause a fault.
     #[error("{file}: {source}")]
     Rig {
@@ -105,11 +106,11 @@ pub enum ScenarioError {
 /// The scenes of a scenario, compiled for a board, by their files' names.
 pub type Programs = BTreeMap<String, Program>;
 
-/// Compiles the scenes of a scenario for the board of `config`. `scenes` has them by their files' names.
+/// Compiles the scenes of a scenario for a board. `scenes` has them by their files' names.
 pub fn programs(
     scenario: &Scenario,
     scenes: &BTreeMap<String, Scene>,
-    board: &frixel_hil_sim::Board,
+    board: &Board,
 ) -> Result<Programs, ScenarioError> {
     let compiled = scenario.scenes().map(|name| {
         let none = || ScenarioError::NoScene { file: scenario.file.clone(), scene: name.to_owned() };
@@ -119,13 +120,9 @@ pub fn programs(
     compiled.collect()
 }
 
-/// The stroke of a scenario, and its world; `config` has the rates of the board.
-pub fn stroke_and_world(
-    scenario: &Scenario,
-    programs: &Programs,
-    config: WorldConfig,
-) -> Result<(Stroke, WorldConfig), ScenarioError> {
-    let world = config.with(&WorldOptions { ideal: !scenario.is_realistic, ..WorldOptions::default() });
+/// World and stroke of a scenario on the board of `rig`.
+pub fn simulation(scenario: &Scenario, programs: &Programs, rig: &RigConfig) -> Result<Simulation, ScenarioError> {
+    let world = WorldOptions { ideal: !scenario.is_realistic, ..WorldOptions::default() };
     let stroke = if let Some(stroke) = &scenario.stroke {
         let [from, to] = [stroke.from_mm, stroke.to_mm].map(|[x, y]| Point { x_m: 1e-3 * x, y_m: 1e-3 * y });
         Stroke::constant_speed(from, to, 1e-3 * stroke.speed_mm_per_s).and_then(|stroke| stroke.looped(REPEAT_PAUSE_S))
@@ -133,7 +130,19 @@ pub fn stroke_and_world(
         endless_sweep(programs.get(&scenario.scene).map_or(BUNDLED_SCREEN_M, screen_m))
     };
     let stroke = stroke.map_err(|source| ScenarioError::Stroke { file: scenario.file.clone(), source })?;
-    Ok((stroke, world))
+    let simulation = Simulation::of_stroke(rig.with(&world), stroke, scenario.seed);
+    Ok(Simulation { seconds: scenario.seconds, ..simulation })
+}
+
+/// The world of a scenario around a board that is not this process's, with the finger of the first scene.
+pub fn world(scenario: &Scenario, programs: &Programs, board: &Board) -> Result<World, ScenarioError> {
+    let program = first_program(scenario, programs)?;
+    Ok(simulation(scenario, programs, &RigConfig::of(*board))?.world(program)?)
+}
+
+fn first_program<'p>(scenario: &Scenario, programs: &'p Programs) -> Result<&'p Program, ScenarioError> {
+    let no_scene = || ScenarioError::NoScene { file: scenario.file.clone(), scene: scenario.scene.clone() };
+    programs.get(&scenario.scene).ok_or_else(no_scene)
 }
 
 /// Runs a scenario on the in-process rig of `config`'s board, for which its [`programs`] are.
@@ -142,10 +151,9 @@ pub fn run_in_process(
     programs: &Programs,
     config: &RigConfig,
 ) -> Result<ScenarioOutcome, ScenarioError> {
-    let (stroke, world) = stroke_and_world(scenario, programs, config.world)?;
     let (mut memory, mut spare) = (BoardMemory::new(), vec![]);
     spare.resize_with(scenario.resets(), BoardMemory::new);
-    let rig = Rig::new(&mut memory, &RigConfig { world, ..*config }, stroke, scenario.seed)?;
+    let rig = simulation(scenario, programs, config)?.rig(&mut memory).map_err(SimulationError::from)?;
     run(scenario, programs, &mut rig.with_spare_memories(&mut spare))
 }
 
@@ -155,10 +163,9 @@ fn ticks_of(ms: f64, tick_hz: u32) -> u64 {
     (1e-3 * ms * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64
 }
 
-/// Runs a scenario on a rig, whose world has the finger of [`stroke_and_world`].
+/// Runs a scenario on a rig, in the [`world`] of the scenario.
 pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> Result<ScenarioOutcome, ScenarioError> {
-    let no_scene = || ScenarioError::NoScene { file: scenario.file.clone(), scene: scenario.scene.clone() };
-    let line = ScenarioLine::new(scenario, programs.get(&scenario.scene).ok_or_else(no_scene)?, rig);
+    let line = ScenarioLine::new(scenario, first_program(scenario, programs)?, rig);
     let mut host = Host::new(scenario, programs, line.clone());
     host.run();
     let failures = host.into_failures();

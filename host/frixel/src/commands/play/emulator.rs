@@ -1,6 +1,6 @@
 //! Playing on the firmware in an emulator: the one for QEMU, and the image of the Pico.
 
-use crate::commands::error::of_finger;
+use crate::commands::error::of_simulation;
 use crate::rigs::EmulatedRig;
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
@@ -46,12 +46,10 @@ pub(super) fn play_on_pico(
     follow(args, plan, device, outputs, interrupt)
 }
 
-/// The plan of a play on an emulated board, and the world around the board, with the drawn person's finger or else the
-/// one that the scene was made for.
+/// The plan of a play on an emulated board, and the world around the board.
 fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
     let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
-    let simulation = plan.simulation(args, scene, &RigConfig::of(*board))?;
-    let mut world = World::new(simulation.rig.world, simulation.stroke, simulation.seed)?;
-    world.set_finger(plan.program.header.friction_law().map_err(of_finger)?);
+    let simulation = plan.simulation(args, scene, &RigConfig::of(*board))?.clone();
+    let world = simulation.world(&plan.program).map_err(of_simulation)?;
     Ok((plan, world))
 }

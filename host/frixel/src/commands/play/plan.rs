@@ -30,8 +30,8 @@ pub(super) struct Plan {
     pub(super) stream_s: Option<f64>,
     /// The world that is simulated beside the board; `None` for a board at a port.
     pub(super) world: Option<WorldReport>,
-    /// Whether the reference goes through the simulated finger.
-    pub(super) has_own_reference: bool,
+    /// The play in virtual time; `None` for a board at a port.
+    simulation: Option<Simulation>,
     ticks_per_row: u32,
     /// Ticks between two telemetry messages; 0 for rigs whose ticks are observed directly.
     pub(super) telemetry_period_ticks: u32,
@@ -115,7 +115,7 @@ impl Plan {
             stream_s: feed.as_ref().and_then(Feed::duration_s),
             feed,
             world: None,
-            has_own_reference: false,
+            simulation: None,
             ticks_per_row,
             telemetry_period_ticks,
             limits,
@@ -126,7 +126,7 @@ impl Plan {
 
     /// What the options simulate around the board of `rig`. Without `--seconds`, the play lasts as long as the file of
     /// `--stream`, while the finger repeats its stroke, or else as long as the stroke.
-    pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: &RigConfig) -> Result<Simulation> {
+    pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: &RigConfig) -> Result<&Simulation> {
         let inputs = (args.stroke.file().map(from_file).transpose()?, args.touch.source()?);
         let simulation = args.options(self.stream_s).simulation(scene, &self.program, inputs, rig);
         let simulation = simulation.map_err(|error| args.error(error))?;
@@ -134,10 +134,9 @@ impl Plan {
             note_off_screen(&args.stroke.name(), &simulation.stroke, screen_m(&self.program), simulation.seconds)?;
         }
         self.seconds = Some(simulation.seconds);
-        self.has_own_reference = simulation.through_finger;
         let touch_source = (&simulation.rig.world.touch).into();
         self.world = Some(WorldReport { effects: args.effects(), touch_source, finger_seed: args.finger_seed });
-        Ok(simulation)
+        Ok(self.simulation.insert(simulation))
     }
 
     /// Ticks between two rows.
@@ -171,12 +170,11 @@ impl Plan {
 
     /// Creates the recorder of the play. In virtual time, it ends after exactly the ticks of the play.
     pub(super) fn recorder(&self) -> Result<Recorder> {
-        let ticks = (self.seconds() * f64::from(self.tick_hz)).round() as u64;
-        let ticks_max = if self.target.is_virtual_time() { ticks } else { u64::MAX };
-        let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks_max, self.ticks_per_row);
-        let recorder = recorder.map_err(of_finger)?;
-        let recorder = if self.has_own_reference { recorder.through_finger() } else { recorder };
-        Ok(if self.target.is_virtual_time() { recorder.judged() } else { recorder })
+        if let Some(simulation) = &self.simulation {
+            return Ok(simulation.recorder(&self.program)?.judged());
+        }
+        let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, u64::MAX, self.ticks_per_row);
+        recorder.map_err(of_finger)
     }
 }
 
