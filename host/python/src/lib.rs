@@ -47,11 +47,15 @@ mod _frixel {
     #[pymodule_export]
     use super::sweep::{play_cell, study_files, sweep_cells};
 
+    use frixel_lab::score::TrialPlan;
     use pyo3::types::PyModuleMethods;
     use pyo3::{Bound, PyResult};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, pyo3::types::PyModule>) -> PyResult<()> {
+        module.add("STROKES", TrialPlan::STROKES)?;
+        module.add("SEEDS", TrialPlan::SEEDS)?;
+        module.add("STROKE_S", TrialPlan::SECONDS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -32,13 +32,13 @@ pub(super) struct ScoreArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     people: Option<u64>,
     /// Number of human strokes, of each person.
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = clap::value_parser!(u64).range(1..=1000))]
     strokes: u64,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = clap::value_parser!(u64).range(1..=1000))]
     seeds: u64,
     /// Length of a generated stroke.
-    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = super::argument::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS, value_parser = super::argument::seconds, allow_negative_numbers = true)]
     seconds: f64,
     /// Median speed of human strokes. Without it, each person has their own.
     #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]

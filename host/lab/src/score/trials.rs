@@ -12,6 +12,11 @@ use super::{Trial, TrialFinger};
 use crate::GeneratedStroke;
 use crate::simulate::screen_m;
 
+/// Most plays of a score.
+const PLAYS_MAX: u64 = 100_000;
+/// Longest time of all human strokes of a score together, s: they are in memory at the same time, 40 kB a second.
+const STROKES_MAX_S: f64 = 36_000.0;
+
 /// Where a simulated finger goes.
 #[derive(Clone, Debug)]
 pub enum TrialStroke {
@@ -39,6 +44,24 @@ pub enum TrialsError {
     /// The scene's screen is not known without its own finger.
     #[error(transparent)]
     Screen(#[from] CompileError),
+    /// They would not end.
+    #[error(
+        "people x strokes x seeds are {plays} plays, and at most {PLAYS_MAX} are scored: give fewer, or share the work \
+         by a sweep"
+    )]
+    TooMany {
+        /// Number of plays.
+        plays: u64,
+    },
+    /// Their strokes do not fit into memory.
+    #[error(
+        "people x strokes x seconds are {seconds} s of strokes, and {STROKES_MAX_S} s fit into memory: give fewer or \
+         shorter ones, or share the work by a sweep"
+    )]
+    TooLong {
+        /// Duration of all strokes together, s.
+        seconds: f64,
+    },
 }
 
 /// The strokes of a finger.
@@ -57,9 +80,17 @@ pub struct TrialPlan {
 }
 
 impl TrialPlan {
+    /// Number of strokes unless another is given.
+    pub const STROKES: u64 = 4;
+    /// Repetitions of each stroke unless others are given.
+    pub const SEEDS: u64 = 2;
+    /// Duration of a generated stroke unless another is given, s.
+    pub const SECONDS: f64 = 3.0;
+
     /// The trials of so many simulated people, the first of an assumed population, whom the board does not know;
-    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. `goes_on` is asked before
-    /// each stroke; when it breaks, the result is what was made so far.
+    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. Refuses more plays than end, and
+    /// longer strokes than fit into memory. `goes_on` is asked before each stroke; when it breaks, the result is what was
+    /// made so far.
     pub fn of_people(
         &self,
         people: Option<u64>,
@@ -67,6 +98,7 @@ impl TrialPlan {
         program: &Program,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, TrialsError> {
+        self.check_size(people.unwrap_or(1))?;
         let Some(people) = people else { return Ok(self.trials(program, None, goes_on)?) };
         let coating_gap_um = scene.screen().coating_gap_um();
         let of_person = |person| {
@@ -75,6 +107,19 @@ impl TrialPlan {
         };
         let trials = (1..=people).take_while(|_| goes_on().is_continue()).map(of_person);
         Ok(trials.collect::<Result<Vec<_>, TrialsError>>()?.into_iter().flatten().collect())
+    }
+
+    fn check_size(&self, people: u64) -> Result<(), TrialsError> {
+        let is_of_people = matches!(self.stroke, TrialStroke::Generated(stroke) if stroke.is_of_people());
+        let strokes = people.saturating_mul(if is_of_people { self.strokes } else { 1 });
+        let (plays, seconds) = (strokes.saturating_mul(self.seeds), strokes as f64 * self.seconds);
+        if plays > PLAYS_MAX {
+            return Err(TrialsError::TooMany { plays });
+        }
+        if is_of_people && seconds > STROKES_MAX_S {
+            return Err(TrialsError::TooLong { seconds });
+        }
+        Ok(())
     }
 
     /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their

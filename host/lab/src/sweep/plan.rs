@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::cell::Cell;
 use super::parameter::{Value, with_field};
 use crate::GeneratedStroke;
+use crate::score::TrialPlan;
 
 /// Most cells of a plan.
 const CELLS_MAX: usize = 1_000_000;
@@ -46,13 +47,13 @@ pub struct Plan {
     #[serde(default)]
     pub stroke: GeneratedStroke,
     /// Strokes of each person.
-    #[serde(default = "four")]
+    #[serde(default = "strokes")]
     pub strokes: u64,
     /// Repetitions of each stroke.
-    #[serde(default = "two")]
+    #[serde(default = "seeds")]
     pub seeds: u64,
     /// Duration of a stroke, s.
-    #[serde(default = "three_s")]
+    #[serde(default = "seconds")]
     pub seconds: f64,
     /// Median speed of the strokes, mm/s. Without it, each person has their own.
     pub median_speed_mm_per_s: Option<f64>,
@@ -80,16 +81,16 @@ fn slowest_touch() -> Vec<String> {
     vec!["100".to_owned()]
 }
 
-fn four() -> u64 {
-    4
+fn strokes() -> u64 {
+    TrialPlan::STROKES
 }
 
-fn two() -> u64 {
-    2
+fn seeds() -> u64 {
+    TrialPlan::SEEDS
 }
 
-fn three_s() -> f64 {
-    3.0
+fn seconds() -> f64 {
+    TrialPlan::SECONDS
 }
 
 /// The values of a field.

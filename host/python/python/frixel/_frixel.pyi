@@ -13,6 +13,9 @@ from .stroke import Stroke
 _Column = NDArray[np.float64]
 
 __version__: str
+STROKES: int
+SEEDS: int
+STROKE_S: float
 
 def contact_scales(contact: Contact | SoftContact) -> tuple[float, float, float] | None: ...
 def eval_contact(

@@ -10,7 +10,6 @@ from typing import Any
 
 from . import _frixel, _tables
 from ._arguments import DAY_S, flag, number, refusal, whole
-from .errors import ParameterError
 from .profiles import Finger, Screen, TouchSource
 from .scene import Scene
 from .stroke import Stroke
@@ -19,12 +18,6 @@ __all__ = ["Score", "score"]
 
 COUNT_MAX = 1000
 """Most people, strokes, repetitions and threads."""
-
-PLAYS_MAX = 100_000
-"""Most plays of a score."""
-
-STROKES_MAX_S = 36_000.0
-"""Longest time of all human strokes of a score together, s: they are in memory at the same time, 40 kB a second."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +84,9 @@ def score(
     screen: Screen | str | Mapping[str, Any] | None = None,
     people: int | None = None,
     stroke: Stroke | str = "human",
-    strokes: int = 4,
-    seeds: int = 2,
-    seconds: float = 3.0,
+    strokes: int = _frixel.STROKES,
+    seeds: int = _frixel.SEEDS,
+    seconds: float = _frixel.STROKE_S,
     median_speed_mm_per_s: float | None = None,
     touch: TouchSource | str | int | Mapping[str, Any] | None = None,
     ideal: bool = False,
@@ -114,11 +107,11 @@ def score(
         `human`, `human-rough` (with the accelerations of recorded strokes before smoothing), `sweep`, or one stroke for
         all.
     strokes
-        Number of human strokes, of each person.
+        Number of human strokes, of each person. Without it 4.
     seeds
-        Repetitions of each stroke, with other loads, noise and lost reports.
+        Repetitions of each stroke, with other loads, noise and lost reports. Without it 2.
     seconds
-        Duration of a stroke that is generated, s: at most 600 s of a human stroke, and a day of `sweep`.
+        Duration of a stroke that is generated, s: at most 600 s of a human stroke, and a day of `sweep`. Without it 3.
     median_speed_mm_per_s
         Median speed of human strokes, from 1 to 1000 mm/s; without it, each person has their own.
     touch
@@ -160,22 +153,5 @@ def score(
         flag("ideal", ideal),
         0 if jobs is None else whole("jobs", jobs, 1, COUNT_MAX),
     )
-    _check_size(settings)
     summary, words, plays, layers = _frixel.score_scene(scene.compiled, settings)
     return Score(json.loads(summary), words, {"score.csv": plays, "score-layers.csv": layers})
-
-
-def _check_size(settings: _Settings) -> None:
-    """Refuse more plays than end, and longer strokes than fit into memory."""
-    is_human = settings.stroke in ("human", "human-rough")
-    strokes = (settings.people or 1) * (settings.strokes if is_human else 1)
-    if strokes * settings.seeds > PLAYS_MAX:
-        raise ParameterError(
-            f"people x strokes x seeds are {strokes * settings.seeds} plays, and at most {PLAYS_MAX} are scored: give "
-            "fewer, or share the work by frixel.sweep"
-        )
-    if is_human and strokes * settings.seconds > STROKES_MAX_S:
-        raise ParameterError(
-            f"people x strokes x seconds are {strokes * settings.seconds:g} s of strokes, and {STROKES_MAX_S:g} s "
-            "fit into memory: give fewer or shorter ones, or share the work by frixel.sweep"
-        )
