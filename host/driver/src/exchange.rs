@@ -27,6 +27,8 @@ pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
 /// Timeout of a request regardless of other traffic.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
+/// Time for an orderly end of a wait that a person interrupts.
+const GRACE: Duration = Duration::from_secs(1);
 /// Longest interval between calls of a watcher.
 const WAITING_PERIOD: Duration = Duration::from_millis(100);
 /// Retry interval while the board is busy.
@@ -46,6 +48,13 @@ pub struct Waiting {
     pub waited: Duration,
     /// Timeout of the call.
     pub waited_max: Duration,
+}
+
+impl Waiting {
+    /// Whether the wait has had time for an orderly end, so that an interrupted program may break it off.
+    pub fn may_break_off(&self) -> bool {
+        self.waited >= GRACE
+    }
 }
 
 /// A function that observes a waiting call, and may end it.

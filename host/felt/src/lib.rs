@@ -24,6 +24,6 @@ mod spectrum;
 #[cfg(test)]
 mod tests;
 
-pub use goes_on::{GoesOn, TO_THE_END};
+pub use goes_on::{GoesOn, TO_THE_END, break_if};
 pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
 pub use spectrum::band_rms;

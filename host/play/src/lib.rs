@@ -33,7 +33,7 @@ mod upload;
 pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
-pub use frixel_felt::{GoesOn, TO_THE_END};
+pub use frixel_felt::{GoesOn, TO_THE_END, break_if};
 pub use judged::{board_costs, judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced, check_measured};

@@ -1,13 +1,12 @@
 //! Long work, without Python's lock, that Ctrl-C ends.
 
-use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-use frixel_play::GoesOn;
+use frixel_play::{GoesOn, break_if};
 use pyo3::prelude::*;
 
 /// Time between two looks at Python's signals.
@@ -24,8 +23,7 @@ pub(crate) fn raised_by_signal() -> Option<PyErr> {
 /// given breaks, and the result is the exception of the signal.
 pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(GoesOn<'_>) -> T + Send) -> PyResult<T> {
     let is_interrupted = AtomicBool::new(false);
-    let goes_on =
-        || if is_interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let goes_on = || break_if(is_interrupted.load(Ordering::Relaxed));
     py.detach(|| {
         thread::scope(|scope| {
             let (done, ended) = channel();

@@ -5,6 +5,8 @@ use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use frixel_play::break_if;
+
 /// Exit code of a process that a second signal has ended: what shells report of one that Ctrl-C ended.
 const EXIT_CODE: i32 = 130;
 
@@ -40,6 +42,6 @@ impl Interrupt {
 
     /// Breaks when the command should end, for use as [`GoesOn`](frixel_play::GoesOn).
     pub(super) fn goes_on(&self) -> ControlFlow<()> {
-        if self.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        break_if(self.is_requested())
     }
 }

@@ -1,17 +1,15 @@
 //! What a command waits for, when a board takes long to answer.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use frixel_driver::{Device, Link, Waiting};
+use frixel_play::break_if;
 
 use super::interrupt::Interrupt;
 use super::terminal::note;
 
 /// A board that is in order answers within milliseconds: after this time the command says what it waits for.
 const SAID_AFTER: Duration = Duration::from_secs(2);
-/// Time for an orderly end of a wait that Ctrl-C interrupts.
-const GRACE: Duration = Duration::from_secs(1);
 
 /// Says on standard error what a long call to `device` waits for, and breaks it off once the command is to end.
 pub(super) fn watch<L: Link>(mut device: Device<L>, interrupt: &Interrupt) -> Device<L> {
@@ -28,7 +26,7 @@ pub(super) fn watch<L: Link>(mut device: Device<L>, interrupt: &Interrupt) -> De
                 waited_max.as_secs()
             ));
         }
-        if interrupt.is_requested() && waited >= GRACE { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        break_if(interrupt.is_requested() && waiting.may_break_off())
     });
     device
 }

@@ -6,11 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration;
 
-use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink, Waiting};
+use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, WorldOptions};
 use frixel_lab::simulate::{BUNDLED_SCREEN_M, endless_sweep};
-use frixel_play::RigStream;
-use frixel_play::{Feed, LiveError, PlayError, Player, Replaced};
+use frixel_play::{Feed, LiveError, PlayError, Player, Replaced, RigStream, break_if};
 use frixel_scene::Program;
 use frixel_wire::fault::State;
 use frixel_wire::hello::Hello;
@@ -22,8 +21,6 @@ use super::observed::Observed;
 
 /// Seed of the simulated world.
 const SEED: u64 = 1;
-/// Time for an orderly end of a wait that a signal interrupts.
-const GRACE: Duration = Duration::from_secs(1);
 
 /// What the program asks for.
 pub(super) enum Request {
@@ -121,7 +118,7 @@ impl Interrupted {
     }
 
     fn flow(&self) -> ControlFlow<()> {
-        if self.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        break_if(self.is_set())
     }
 }
 
@@ -190,11 +187,7 @@ fn serve<L: Link>(
     interrupted: &Interrupted,
 ) {
     let watched = interrupted.clone();
-    device.while_waiting(
-        move |Waiting { waited, .. }| {
-            if *waited >= GRACE { watched.flow() } else { ControlFlow::Continue(()) }
-        },
-    );
+    device.while_waiting(move |waiting| break_if(waiting.may_break_off() && watched.is_set()));
     let hello = *device.hello();
     let mut player = Player::new(device);
     let mut is_listening = opened.send(Ok(hello)).is_ok();
