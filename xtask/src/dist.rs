@@ -11,7 +11,7 @@
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
 //!
-//! No file says where it was built: [`machine_paths`] takes care of that, and looks.
+//! No file names a folder of the build machine: [`machine_paths`] replaces them, and checks the files.
 
 use std::fmt::Write;
 use std::fs;

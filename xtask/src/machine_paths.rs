@@ -1,4 +1,4 @@
-//! Folders of the machine that builds, which nothing that is handed on may name.
+//! Folders of the build machine, which must not appear in distributed files.
 
 use std::env;
 use std::fs;
@@ -35,7 +35,7 @@ fn machine_paths() -> Result<Vec<MachinePath>, String> {
     Ok(paths)
 }
 
-/// Lets a build by cargo, or by a program that calls it, write other names in place of the machine's paths.
+/// Makes a build, by cargo or by a program that calls it, write other names in place of the machine's paths.
 pub(crate) fn left_out(build: &mut Command) -> Result<&mut Command, String> {
     // The compiler takes the last one that fits.
     let of = |MachinePath { path, name }: &MachinePath| format!("--remap-path-prefix={}={name}", path.display());

@@ -1,7 +1,7 @@
 //! What the checks need of the machine besides cargo and a C linker.
 //!
-//! All of it is looked at before anything is compiled. What `rustup` can add is added; what is missing in spite of that
-//! is said together with the stages that are skipped without it. In continuous integration, it is an error instead.
+//! Everything is checked before anything is compiled. Needs that `rustup` can add are added. The others are reported
+//! with the stages that are skipped; in continuous integration, they are an error instead.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::env;

@@ -65,7 +65,7 @@ mod tests {
         }
     }
 
-    /// Crates.io shows the first three; whoever has only the package has the licences in it.
+    /// Crates.io shows the first three. The licences are in the package, for users who have nothing else.
     #[test]
     fn a_published_crate_says_what_it_is_and_has_its_licences() {
         for package in published().unwrap() {

@@ -10,7 +10,7 @@
 //! - `quit`: ends the play.
 //!
 //! NAME is the name of a layer in the scene, or its number as in messages: `3`, or `3.2` for a copy. Names and paths
-//! with spaces stand in quotation marks. Empty lines, and what follows `#`, are ignored.
+//! with spaces need quotation marks. Empty lines, and everything after `#`, are ignored.
 
 use thiserror::Error;
 

@@ -21,7 +21,7 @@ pub(super) use incoming::StreamReport;
 
 /// Sequence number of requests whose answer is ignored.
 const UNAWAITED: u16 = 0;
-/// Timeout of an answer after the request has reached the board; also of a line on which no byte moves.
+/// Timeout of an answer after its request has reached the board; also the timeout of a stalled line.
 pub(super) const ANSWER_TIMEOUT: Duration = Duration::from_millis(750);
 /// Retry interval of a request, measured like [`ANSWER_TIMEOUT`], in case its frame was damaged.
 const REPEAT_AFTER: Duration = Duration::from_millis(250);
@@ -33,10 +33,10 @@ const GRACE: Duration = Duration::from_secs(1);
 const WAITING_PERIOD: Duration = Duration::from_millis(100);
 /// Retry interval while the board is busy.
 const BUSY_RETRY_AFTER: Duration = Duration::from_millis(5);
-/// Credit reserved by uploads for commands and pings, bytes: about a dozen. Lost ones take up credit until a command is
-/// answered.
+/// Credit that uploads leave free for commands and pings, bytes: enough for about a dozen. Lost ones take up credit
+/// until a command is answered.
 const RESERVE_LEN: usize = 256;
-/// Credit reserved by commands for pings, bytes: the ten that may be unanswered after a minute.
+/// Credit that commands leave free for pings, bytes: up to ten of them may be unanswered after a minute.
 const PING_RESERVE_LEN: usize = 128;
 
 /// State of a waiting call; see [`Device::while_waiting`](crate::Device::while_waiting).

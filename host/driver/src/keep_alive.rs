@@ -237,7 +237,7 @@ mod tests {
         assert!(pings.hear(&damaged, MS) && pings.unanswered.is_empty());
     }
 
-    /// An early ping's answer is not taken for that of a later one, which would seem quick.
+    /// The answer to an early ping is not attributed to a later one, whose round trip would then seem short.
     #[test]
     fn the_round_trip_of_a_board_that_becomes_slow_is_its_own() {
         let mut pings = pinging();

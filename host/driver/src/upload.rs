@@ -50,13 +50,13 @@ impl Upload<'_> {
 /// A bitmap of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Bitmap<'a> {
-    /// CRC-32 of the samples: the bitmap's name in the scene.
+    /// CRC-32 of the samples, by which the scene refers to the bitmap.
     pub crc32: u32,
     /// Samples in a row.
     pub width: u16,
     /// Rows of samples.
     pub height: u16,
-    /// One byte a sample, row after row from the top left.
+    /// One byte per sample, row by row from the top left.
     pub samples: &'a [u8],
 }
 

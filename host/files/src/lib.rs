@@ -8,7 +8,7 @@
 //! | a log that others read while it grows | [`OutputFile::create_live`] | under its own name, in whole rows |
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.
-//! - No output replaces a recording of a person, unless the user says so. Its content tells what it is.
+//! - No output replaces a recording of a person, unless the user says so. Recordings are recognised by their content.
 //! - A file gets its name when everything is on the disk, in one step: the earlier one stays until then.
 //! - Files that belong together are renamed together ([`commit_all`]); the last one may have the hashes of the others.
 //! - A folder has one writer at a time ([`OutputFolder`]).

@@ -13,7 +13,7 @@ fn is_standard_output(path: &Path) -> bool {
     path == Path::new("-") || is_open_at(stdout(), path)
 }
 
-/// The file that a name leads to, or would create, by its path without symbolic links. None for a device, a pipe, or a
+/// Path of the file that a name refers to, or would create, without symbolic links. None for a device, a pipe, or a
 /// file that this process was started with: no other file can take its name.
 fn file_at(path: &Path) -> io::Result<Option<PathBuf>> {
     if is_standard_output(path) || path.starts_with("/dev/fd") || path.starts_with("/proc") {
@@ -23,7 +23,7 @@ fn file_at(path: &Path) -> io::Result<Option<PathBuf>> {
         Ok(metadata) if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
         Ok(metadata) if metadata.is_file() => path.canonicalize().map(Some),
         Ok(_) => Ok(None),
-        // Whoever creates the file or its folder says what is missing.
+        // Creating the file or its folder reports what is missing.
         Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             Ok(Some(without_links(path)))
         }
@@ -31,7 +31,7 @@ fn file_at(path: &Path) -> io::Result<Option<PathBuf>> {
     }
 }
 
-/// The file that a name that leads to none would create. A link that leads to none yet is followed.
+/// The file that an unused name would create. A dangling link is followed.
 fn without_links(path: &Path) -> PathBuf {
     let file = fs::read_link(path).map_or_else(|_| path.to_owned(), |target| folder_of(path).join(target));
     match (folder_of(&file).canonicalize(), file.file_name()) {
@@ -63,7 +63,7 @@ impl OutputFile {
         Self::replacing(path, option, inputs, false)
     }
 
-    /// As [`Self::new`], for a file that replaces a recording of a person if it `overwrites`.
+    /// Like [`Self::new`], but replaces a recording of a person if it `overwrites`.
     pub fn replacing(path: &Path, option: &'static str, inputs: &Inputs, overwrites: bool) -> Result<Self, Error> {
         let output = Self::at(path, option, inputs, overwrites)?;
         if !overwrites && output.file.as_deref().is_some_and(is_of_person) {
@@ -121,17 +121,17 @@ impl OutputFile {
         &self.path
     }
 
-    /// Whether the output goes to standard output, where no messages for people belong then.
+    /// Whether the output goes to standard output, which then must not carry messages for people.
     pub fn is_standard_output(&self) -> bool {
         is_standard_output(&self.path)
     }
 
-    /// Whether the output has a name that other files can stand beside.
+    /// Whether the output is a file, beside which other files can be written.
     pub fn is_file(&self) -> bool {
         self.file.is_some()
     }
 
-    /// Starts to write the file. It is whole, or as it was before, until [`FileWriter::commit`].
+    /// Starts to write the file. The earlier file stays intact until [`FileWriter::commit`].
     pub fn create(&self) -> Result<FileWriter, Error> {
         let sink = match &self.file {
             Some(file) => Sink::File(NewFile::open(&self.path, file, &hidden_beside(file))?),
@@ -141,8 +141,8 @@ impl OutputFile {
         Ok(FileWriter::new(&self.path, sink))
     }
 
-    /// Starts to write a log that others read while it grows. It replaces an earlier file at once, and always has whole
-    /// rows.
+    /// Starts to write a log that others read while it grows. It replaces an earlier file at once, and only ever has
+    /// complete rows.
     pub fn create_live(&self) -> Result<FileWriter, Error> {
         self.create()?.live()
     }
@@ -152,7 +152,7 @@ impl OutputFile {
         self.filled(bytes)?.commit()
     }
 
-    /// As [`Self::write`], before the commit.
+    /// Like [`Self::write`], without the commit.
     pub fn filled(&self, bytes: &[u8]) -> Result<FileWriter, Error> {
         let mut writer = self.create()?;
         writer.write_out(bytes).map_err(|error| writer.error(error))?;
@@ -168,13 +168,13 @@ impl OutputFile {
     }
 }
 
-/// Where a result is written until it is whole.
+/// Path of a result that is not complete.
 fn hidden_beside(file: &Path) -> PathBuf {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     file.with_file_name(format!(".{name}.frixel-tmp"))
 }
 
-/// Where a recording is written until it is whole.
+/// Path of a recording that is not complete.
 pub(crate) fn partial_beside(file: &Path) -> PathBuf {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(".partial");

@@ -12,18 +12,18 @@ use crate::writer::{NewFile, Sink, has_rows};
 use crate::{Error, FileWriter, OutputFile, writing};
 
 impl OutputFile {
-    /// Where the rows of a recording are until it is whole, as the user would name it.
+    /// Path of the rows of a recording that is not complete, as the user would write it.
     pub fn partial(&self) -> PathBuf {
         partial_beside(self.path())
     }
 
-    /// Whether a recording that was cut off has left rows.
+    /// Whether an interrupted recording has left rows.
     pub fn is_cut_off(&self) -> bool {
         let rows = |file: &PathBuf| read(&partial_beside(file), CSV_MAX_BYTES);
         self.file.as_ref().is_some_and(|file| rows(file).is_ok_and(|rows| has_rows(&rows)))
     }
 
-    /// Removes the rows of a recording that is whole.
+    /// Removes the partial file of a complete recording.
     pub fn discard_partial(&self) {
         if let Some(file) = &self.file {
             // A file that cannot be removed is named by the next recording.
@@ -31,8 +31,8 @@ impl OutputFile {
         }
     }
 
-    /// Begins a recording. Fails if an earlier one was cut off, with `advice` on how to keep its rows. If the output
-    /// overwrites, these stay until the first ones of this recording.
+    /// Begins a recording. Fails if an earlier one was interrupted, with `advice` on how to keep its rows. If the
+    /// output overwrites, the old rows stay until the first new ones are written.
     pub fn record(&self, advice: &'static str) -> Result<FileWriter, Error> {
         let Some((partial, earlier)) = self.open_partial()? else { return self.create() };
         if !self.overwrites && has_rows(&earlier) {
@@ -44,8 +44,8 @@ impl OutputFile {
         Ok(FileWriter::new(self.path(), Sink::File(partial)))
     }
 
-    /// Goes on with a recording that was cut off, and returns its whole rows, header included. They stay as they are
-    /// until more are written, or the recording is committed.
+    /// Resumes an interrupted recording, and returns its complete rows, header included. They stay unchanged until more
+    /// are written, or the recording is committed.
     pub fn resume(&self) -> Result<(FileWriter, String), Error> {
         if let Some((mut partial, mut rows)) = self.open_partial()?
             && has_rows(&rows)

@@ -1,4 +1,4 @@
-//! Writing of a file that has its name only when it is whole.
+//! Writing of files that get their names only when they are complete.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write, stdout};
@@ -17,8 +17,8 @@ use crate::{Error, OutputFile, writing};
 /// Bytes that are collected before they are written, in whole lines.
 const CHUNK: usize = 64 * 1024;
 
-/// A file that is being written. It has its name after [`Self::commit`]; dropped before, a result is as it was, and a
-/// recording is left as `FILE.partial` if it has a row. Errors of writing name the file.
+/// A file that is being written. [`Self::commit`] gives it its name. If it is dropped before, an earlier result stays
+/// as it was, and a recording is left as `FILE.partial` if it has a row. Errors of writing name the file.
 #[derive(Debug)]
 pub struct FileWriter {
     path: PathBuf,
@@ -35,20 +35,20 @@ pub(crate) enum Sink {
     File(NewFile),
 }
 
-/// A file under another name than it will have.
+/// A file under a temporary name.
 #[derive(Debug)]
 pub(crate) struct NewFile {
     pub(crate) file: File,
-    /// The name until the end; none if the file has its own already.
+    /// The temporary name; none if the file already has its own.
     temporary: Option<TempPath>,
     destination: PathBuf,
-    /// Whether no file has the name: one that comes meanwhile keeps it.
+    /// Whether the name is unused. A file created there meanwhile is not replaced.
     is_new: bool,
-    /// Whether rows stay if there is no commit.
+    /// Whether rows are kept without a commit.
     pub(crate) keeps_rows: bool,
-    /// Where the first bytes go, until there are any. What is behind is of an earlier process.
+    /// Offset of the first bytes, until there are any. Content after it is of an earlier process.
     pub(crate) begins_at: Option<u64>,
-    /// Why bytes are missing at the end. Nothing is written behind a gap.
+    /// Error that left bytes missing at the end. Nothing is written after a gap.
     failed: Option<ErrorKind>,
 }
 
@@ -57,7 +57,7 @@ impl FileWriter {
         Self { path: path.to_owned(), sink, pending: Vec::new(), hash: Sha256::new() }
     }
 
-    /// Gives the file its name already, while it has nothing.
+    /// Gives the file its name while it is still empty.
     pub(crate) fn live(mut self) -> Result<Self, Error> {
         if let Sink::File(new) = &mut self.sink
             && let Some(temporary) = new.temporary.take()
@@ -186,7 +186,7 @@ impl NewFile {
         })
     }
 
-    /// Whether these bytes are no row yet, for which the rows of an earlier recording are not given up.
+    /// Whether these bytes have no row yet, so that the rows of an earlier recording are kept.
     fn waits_for_row(&self, bytes: &[u8]) -> bool {
         self.keeps_rows && self.begins_at == Some(0) && !has_rows(bytes)
     }
@@ -198,7 +198,7 @@ impl NewFile {
         self.append(bytes).inspect_err(|error| self.failed = Some(error.kind()))
     }
 
-    /// Writes bytes, or none of them: there is no part of a row in the file.
+    /// Writes all bytes, or none of them, so that the file never has a partial row.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         if let Some(end) = self.begins_at.take() {
             self.file.set_len(end)?;

@@ -11,7 +11,7 @@ use crate::recorded::Recorded;
 /// Shortest step, less than a tick: without it, a time that is rounded down would never be reached.
 const STEP_MIN: Duration = Duration::from_micros(10);
 
-/// Carries out lines of [`ControlLine`] in their order, each at its time of the play.
+/// Carries out [`ControlLine`]s in order, each at its time.
 #[derive(Clone, Debug, Default)]
 pub struct Control {
     lines_read: u32,
@@ -20,31 +20,31 @@ pub struct Control {
     kept: Option<Vec<String>>,
 }
 
-/// What the play does next.
+/// Next step of the play.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
-    /// It goes on.
+    /// Continue.
     GoOn,
-    /// It puts another scene on the board: that of this file.
+    /// Replace the scene with the one in this file.
     Replace(String),
-    /// It ends.
+    /// End the play.
     Quit,
 }
 
 impl Control {
-    /// Keeps the lines that are carried out, for [`Self::kept`]. On a board that does not wait for them, they do not
-    /// make the same play again.
+    /// Creates a control that keeps its lines, for [`Self::kept`]. On a board in real time, they do not reproduce the
+    /// play.
     pub fn keeping_lines() -> Self {
         Self { kept: Some(Vec::new()), ..Self::default() }
     }
 
-    /// The lines so far, without those that `replace` a scene and those that cannot be read; `None` if they are not
-    /// kept.
+    /// The lines so far; `None` if they are not kept. Lines that `replace` a scene, and those that cannot be read, are
+    /// left out.
     pub fn kept(&self) -> Option<&[String]> {
         self.kept.as_deref()
     }
 
-    /// Keeps a line that replaces the scene by the one of this number.
+    /// Keeps a line that replaces the scene with the one of this number.
     pub fn keep_replace(&mut self, number: usize) {
         if let Some(kept) = &mut self.kept {
             kept.push(format!("replace {number}"));
@@ -57,12 +57,13 @@ impl Control {
         Duration::try_from_secs_f64(until_next_s).unwrap_or(Duration::MAX).max(STEP_MIN)
     }
 
-    /// Ends triggers, and carries out the lines of `next_line` until there is none, or one has to wait, at time `t_s`
-    /// of the play. Calls `say` with what is refused or clamped, a sentence each.
+    /// Ends triggers, and carries out the lines of `next_line` that are due at time `t_s` of the play.
+    ///
+    /// Stops when there is no line, or one has to wait. Calls `say` with a sentence for each refusal or clamped layer.
     ///
     /// # Errors
     ///
-    /// The connection is lost, or the board stopped. What is refused is said instead, and the play goes on.
+    /// Fails if the connection is lost, or if the board stopped. A refusal is passed to `say`, and the play continues.
     pub fn step<L: Link + Recorded>(
         &mut self,
         player: &mut Player<L>,
@@ -109,7 +110,7 @@ impl Control {
     }
 }
 
-/// Ends triggers, and says what the board refuses of it.
+/// Ends triggers, and reports what the board refuses.
 fn end_triggers<L: Link + Recorded>(player: &mut Player<L>, say: &mut dyn FnMut(String)) -> Result<(), PlayError> {
     loop {
         match player.end_triggers() {

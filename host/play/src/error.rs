@@ -1,4 +1,4 @@
-//! Why a play ends early, or goes on unchanged.
+//! Errors of a play, and refusals that leave it unchanged.
 
 use frixel_driver::DeviceError;
 use frixel_model::ParameterError;
@@ -46,7 +46,7 @@ pub enum PlayError {
 }
 
 impl PlayError {
-    /// Whether what was asked for is refused, by the board or before, and the play goes on as it was.
+    /// Whether the request was refused, by the board or earlier, and the play continues unchanged.
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Device(error) => is_refusal(error),
@@ -56,7 +56,7 @@ impl PlayError {
     }
 }
 
-/// Whether the board has refused a request, and goes on as before.
+/// Whether the board refused a request, and continues unchanged.
 pub(crate) fn is_refusal(error: &DeviceError) -> bool {
     matches!(error, DeviceError::Refused { .. })
 }
@@ -73,7 +73,7 @@ pub enum StopReason {
 }
 
 impl StopReason {
-    /// The reason in what a board reports of its state.
+    /// The reason, from the board's report of its state.
     pub(crate) fn of(fault: Option<Fault>, flags: Flags) -> Option<Self> {
         let silent = flags.contains(Flags::HOST_SILENT).then_some(Self::HostSilent);
         fault.map(Self::Fault).or(silent)

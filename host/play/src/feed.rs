@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::recorded::Recorded;
 
-/// Samples that are read ahead, before the board has room for them.
+/// Number of samples to read ahead, before the board has room for them.
 const AHEAD: usize = 2048;
 /// Time for requests at the start of a stream, and for its fade, s.
 const END_S: f64 = 0.05;
@@ -30,11 +30,11 @@ pub struct Feed {
 /// Why a source of samples has failed.
 type SourceError = Box<dyn Error + Send + Sync>;
 
-/// Appends samples until there are so many of them, or none are there yet. Returns false after the last one.
+/// Appends samples up to a given number, or as many as are available. Returns false after the last one.
 type Fetch = Box<dyn FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError>>;
 
 enum Source {
-    /// All samples, and how many of them have been taken.
+    /// All samples, and the number already taken.
     Samples(Vec<u16>, usize),
     Fetched(Fetch),
 }
@@ -56,10 +56,10 @@ impl Feed {
         Self::new(Source::Samples(samples, 0), sample_hz)
     }
 
-    /// Creates a feed of samples that come while they are played.
+    /// Creates a feed of samples that become available during the play.
     ///
-    /// `fetch` appends samples until there are as many as its number says, or as there are at present. It returns false
-    /// after the last one. If it waits for samples, the play waits as well, which suits a board in virtual time only.
+    /// `fetch` appends samples up to the given number, or as many as are available. It returns false after the last
+    /// one. If it waits for samples, the play waits as well, which suits a board in virtual time only.
     pub fn fetched(
         sample_hz: u32,
         fetch: impl FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError> + 'static,
@@ -107,8 +107,9 @@ impl Feed {
         Ok(())
     }
 
-    /// Time that the stream takes from its start until it has faded out, if nothing delays it, in s; `None` if the
-    /// samples come while they are played.
+    /// Duration of the stream until it has faded out, without delays, in s.
+    ///
+    /// `None` if the samples become available during the play.
     pub fn duration_s(&self) -> Option<f64> {
         match &self.source {
             Source::Samples(samples, _) => Some(self.playing_s(samples.len() as u64, 0)),
@@ -124,7 +125,8 @@ impl Feed {
         since(started_at) >= self.playing_s(sent, underruns) && since(ended_at) >= self.playing_s(0, 0)
     }
 
-    /// Time to play so many samples: the board fills its buffer to the start level first, and again after an underrun.
+    /// Time to play so many samples, s: the board fills its buffer to the start level first, and again after an
+    /// underrun.
     fn playing_s(&self, samples: u64, underruns: u32) -> f64 {
         let StreamSettings { sample_hz, start_level } = self.settings;
         let filled = f64::from(start_level) * (1.0 + f64::from(underruns));

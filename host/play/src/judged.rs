@@ -8,7 +8,7 @@ use frixel_scene::Program;
 
 use crate::{GoesOn, RigStream, Simulation, SimulationError, load, simulate};
 
-/// Seed of all that is random in the world, for every element and size.
+/// Random seed of the world, for every element and size.
 const SEED: u64 = 1;
 
 /// The rig on which programs are judged: a board in the realistic world with a touch source. It plays drafts.
@@ -17,8 +17,10 @@ pub fn judged_rig(board: Board, touch: TouchConfig) -> RigConfig {
     RigConfig::of(board).for_drafts().with(&world)
 }
 
-/// What a person will feel of each layer of a program, by [strokes](judge::strokes) that the simulated board of `rig`
-/// plays in virtual time. When `goes_on` breaks, the plays end there.
+/// Judges what a person will feel of each layer of a program.
+///
+/// The simulated board of `rig` plays [strokes](judge::strokes) in virtual time. When `goes_on` breaks, the plays end
+/// early.
 pub fn judge(
     program: &Program,
     rig: &RigConfig,

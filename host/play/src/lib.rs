@@ -1,4 +1,4 @@
-//! A board that plays a program: the one piece of code for the command, the page and the experiments.
+//! Plays programs on boards, for the command, the page and the experiments.
 //!
 //! The input is a compiled [`Program`](frixel_scene::Program), changes of its layers, and the samples of a stream. The
 //! output is calls on a [`Device`](frixel_driver::Device) over any link, and calls to the
@@ -10,7 +10,7 @@
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
 //! - [`RigStream`]: the line to a board in a simulated world, on its clock.
 //! - [`simulate`]: plays a program on the simulated board of this process under a simulated finger, in virtual time.
-//! - [`judge`]: judges a program by strokes that are simulated so.
+//! - [`judge`]: judges a program by simulated strokes.
 //! - [`board_costs`]: memory, table and line bytes that a board needs for a program.
 //! - [`Recorded`]: a link with a record of what the board plays.
 //!

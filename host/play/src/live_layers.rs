@@ -8,10 +8,10 @@ use thiserror::Error;
 
 use crate::trigger::Trigger;
 
-/// Duration of a trigger without one, of a layer without pattern and bursts.
+/// Default duration of a trigger, for a layer without pattern and bursts.
 const TRIGGER: Duration = Duration::from_millis(100);
 
-/// Why layers are not changed as a host asks.
+/// Why a change of layers is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum LiveError {
     /// There is no such layer, or it cannot be changed.
@@ -50,14 +50,14 @@ pub enum LiveError {
         /// The name or number that was given.
         layer: String,
     },
-    /// A gain leads out of reach.
+    /// The friction at a gain is out of reach.
     #[error("gain {gain} is refused: {clamped}{}", gain_advice(*.range))]
     GainOutOfReach {
         /// The gain that was given.
         gain: f32,
         /// The layers whose friction would be clamped.
         clamped: Clamped,
-        /// The least and the largest gain that can be reached; `None` if there is none.
+        /// Smallest and largest gain within reach; `None` if there is none.
         range: Option<(f32, f32)>,
     },
 }
@@ -66,33 +66,33 @@ fn gain_advice(range: Option<(f32, f32)>) -> String {
     range.map_or(String::new(), |(least, most)| format!("; give a gain from {least} to {most}"))
 }
 
-/// A change of layers that the board has to take before it counts.
+/// A change of layers, which takes effect once the board has accepted it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerChange {
     /// Numbers of records, from zero, each with its setting from then on.
     pub settings: Vec<(u8, LayerSetting)>,
-    /// What the board clamps from then on, if it did not before.
+    /// Layers that the board clamps from then on, if it did not clamp them before.
     pub clamped: Option<Clamped>,
     trigger: TriggerChange,
-    /// What the host sets, and keeps when another program follows.
+    /// Settings made by the host, which outlast a replacement of the program.
     sets: Chosen,
 }
 
-/// Which parts of a layer's setting the host has set, so that they do not follow the file.
+/// Parts of a layer's setting that the host has set, and that no longer follow the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Chosen {
     on: bool,
     gain: bool,
 }
 
-/// What a change does to the trigger of its layer.
+/// Effect of a change on the trigger of its layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum TriggerChange {
     Keep,
     End,
-    /// One begins at the first time, with the layer on, and ends at the second one.
+    /// A trigger begins at the first time, with the layer on, and ends at the second time.
     Begin(Duration, Duration),
-    /// It has switched its layer, and goes on.
+    /// The trigger has switched its layer, and continues.
     GoOn(Trigger),
 }
 
@@ -103,11 +103,10 @@ impl LayerChange {
     }
 }
 
-/// A program that plays, with the settings of its layers, and when triggers end. Times are on any clock that only goes
-/// forward.
+/// A program that plays, with the settings of its layers and the ends of its triggers.
 ///
-/// A method that changes a layer returns the change for the board, and the settings stay as they are until
-/// the player says that the board has taken it.
+/// Times are on any clock that only moves forward. A method that changes a layer returns the change for the board. The
+/// settings stay the same until the player confirms that the board has accepted the change.
 #[derive(Clone, Debug)]
 pub struct LiveLayers {
     program: Program,
@@ -119,18 +118,19 @@ pub struct LiveLayers {
 }
 
 impl LiveLayers {
-    /// A program that has just begun: its layers are as the file sets them.
+    /// Creates the layers of a program that has just begun, as set in its file.
     pub fn new(program: Program) -> Self {
         let chosen = vec![Chosen::default(); program.records.len()];
         Self { settings: program.start.clone(), chosen, triggers: Vec::new(), program }
     }
 
-    /// A program that follows this one. Of its live layers, those that this program has, too, keep what the host has
-    /// set of them, and their triggers; all others are as the file sets them. A layer without a name is the same if it
-    /// has the same number and kind.
+    /// Returns the layers of a program that replaces this one.
     ///
-    /// If the drive cannot give what the gains ask for that the host has set, all are those of the file: the second
-    /// value says so.
+    /// Live layers that exist in both programs keep the settings made by the host, and their triggers; all others are
+    /// as set in the file. A layer without a name is the same if it has the same number and kind.
+    ///
+    /// If the drive cannot reach the friction with the gains set by the host, all gains are those of the file, and the
+    /// second value states why.
     pub(crate) fn followed_by(&self, program: Program) -> (Self, Option<Clamped>) {
         let mut next = Self::new(program);
         let titles = (0..).zip(&next.program.titles).filter(|(record, _)| next.program.layers.is_live(*record));
@@ -170,13 +170,13 @@ impl LiveLayers {
         &self.program
     }
 
-    /// Switches a layer, or changes its gain; `None` leaves as it is. The name of a layer with `repeat` is that of all
-    /// its copies.
+    /// Switches a layer, or changes its gain; `None` leaves either unchanged. The name of a layer with `repeat` stands
+    /// for all its copies.
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, and a gain that leads out of reach, now or once all layers are on,
-    /// in a scene that does not saturate and is no draft.
+    /// Fails for an unknown layer, for a layer that cannot be changed, and for a gain whose friction is out of reach,
+    /// now or once all layers are on. A scene that saturates and a draft take any gain.
     pub fn change(&self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, LiveError> {
         let program = &self.program;
         let records = program.layers.records(layer)?;
@@ -194,15 +194,17 @@ impl LiveLayers {
         Ok(LayerChange { settings: of_records(&records, &changed), clamped, trigger, sets })
     }
 
-    /// Switches a layer that is off on at the time `now`, in its pattern if it has one, and off again `duration_s`
-    /// seconds later; without a duration, when its pattern or its first burst is over, or else after 0.1 s. If it is
-    /// triggered already, its pattern or its bursts begin anew, and it ends at the later of both ends. The name of a
-    /// layer with `repeat` is that of all its copies.
+    /// Switches on a layer that is off, and off again `duration_s` seconds later.
+    ///
+    /// The trigger begins at the time `now`, and follows the pattern of the layer if it has one. Without a duration, it
+    /// ends after its pattern or its first burst, or else after 0.1 s. If the layer is already triggered, its pattern
+    /// or its bursts start over, and it ends at the later of both ends. The name of a layer with `repeat` stands for
+    /// all its copies.
     ///
     /// # Errors
     ///
-    /// An unknown layer, one that cannot be changed, an edge or a curve of speed, one that is on, and one that plays
-    /// nothing because its gain is zero.
+    /// Fails for an unknown layer, a layer that cannot be changed, an edge or a curve of speed, a layer that is on, and
+    /// a layer that plays nothing because its gain is zero.
     pub fn trigger(&self, layer: &str, now: Duration, duration_s: Option<f64>) -> Result<LayerChange, LiveError> {
         let records = self.program.layers.records(layer)?;
         for record in &records {
@@ -242,7 +244,7 @@ impl LiveLayers {
         Ok(())
     }
 
-    /// How long a trigger without a duration lasts.
+    /// Default duration of a trigger of this record.
     fn own_duration(&self, record: u8) -> Duration {
         let pattern = self.pattern(record);
         if !pattern.is_empty() {
@@ -256,8 +258,8 @@ impl LiveLayers {
         }
     }
 
-    /// The next change, and its record, that a trigger makes by `now`; `None` if there is none. The change carries no
-    /// notice: the board clamps what it clamped before or at the trigger's begin.
+    /// The next switch that a trigger makes by `now`, with its record; `None` if there is none. The change has no
+    /// notice: the board already clamped the same layers at the trigger's begin or before.
     pub(crate) fn next_switch(&self, now: Duration) -> Option<(u8, LayerChange)> {
         let trigger = *self.triggers.iter().find(|trigger| trigger.next_at <= now)?;
         let (next, on) = trigger.switched(self.pattern(trigger.record));
@@ -266,7 +268,7 @@ impl LiveLayers {
         Some((trigger.record, LayerChange { settings, clamped: None, trigger: change, sets: Chosen::default() }))
     }
 
-    /// Takes over the setting of a record in a change, once the board has taken it.
+    /// Applies the setting of a record in a change, once the board has accepted it.
     pub(crate) fn apply(&mut self, record: u8, setting: LayerSetting, change: &LayerChange) {
         let LayerChange { trigger, sets, .. } = change;
         if let Some(current) = self.settings.get_mut(usize::from(record)) {
@@ -318,7 +320,7 @@ impl LiveLayers {
         self.triggers.iter().map(|trigger| trigger.next_at).min()
     }
 
-    /// Returns a copy of all settings in which some records have another one.
+    /// Returns a copy of all settings, with `on` and `gain` changed for some records.
     fn changed(&self, records: &[u8], on: Option<bool>, gain: Option<f32>) -> Vec<LayerSetting> {
         let mut changed = self.settings.clone();
         for record in records {
@@ -343,7 +345,7 @@ impl LiveLayers {
     }
 }
 
-/// Some records with their settings of all.
+/// Returns some records, each with its setting.
 fn of_records(records: &[u8], settings: &[LayerSetting]) -> Vec<(u8, LayerSetting)> {
     records.iter().filter_map(|record| Some((*record, *settings.get(usize::from(*record))?))).collect()
 }

@@ -23,17 +23,19 @@ const STEP_MAX: Duration = Duration::from_millis(50);
 const STREAM_STEP_MAX: Duration = Duration::from_millis(5);
 /// Extra time beyond the last recorded tick, because the link's clock is rounded.
 const MARGIN: Duration = Duration::from_millis(5);
-/// Longer than a stop takes: with this time between pings, none is sent meanwhile.
+/// Ping period during a stop: longer than a stop takes, so that no ping is sent.
 const NEVER: Duration = Duration::from_hours(1);
 
-/// How one program has replaced another.
+/// How a program replaced the previous one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replaced {
-    /// The pictures of both did not fit on the board together: an empty scene played until the new one was there, so
-    /// that the output faded out meanwhile. Otherwise the change was made between two ticks.
+    /// Whether the output faded out in between.
+    ///
+    /// This happens if the pictures of both programs do not fit on the board together: an empty scene then plays until
+    /// the new program is there. Otherwise the change is made between two ticks.
     pub faded_out: bool,
-    /// What the drive could not give with the gains that were set before, so that all gains are those of the new
-    /// program; `None` if they were kept, or none was set.
+    /// Friction that was out of reach with the gains set before; `None` if they were kept, or none was set. If present,
+    /// all gains are those of the new program.
     pub dropped_gains: Option<Clamped>,
 }
 
@@ -64,9 +66,8 @@ impl<L: Link + Recorded> Player<L> {
         Self::new(device)
     }
 
-    /// Uploads the program and plays it, whatever state an earlier client left the board in. The board sends a
-    /// telemetry message every `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may break the upload
-    /// off.
+    /// Uploads the program and plays it, in any state of the board. The board sends a telemetry message every
+    /// `telemetry_period_ticks` ticks; 0 disables telemetry. `progress` may cancel the upload.
     pub fn start(
         &mut self,
         program: Program,
@@ -98,20 +99,21 @@ impl<L: Link + Recorded> Player<L> {
         Ok(())
     }
 
-    /// The board has begun to play.
+    /// Records that the board has begun to play.
     fn begin(&mut self) -> Result<(), DeviceError> {
         (self.state, self.fault, self.stop_reason) = (State::Active, None, None);
         self.device.link_mut().begin().map_err(|closed| DeviceError::Vanished { command: "play", closed })
     }
 
-    /// Puts another program on the board, which plays it from now on if it plays. The change is made between two ticks,
-    /// unless the pictures of both do not fit on the board together.
+    /// Replaces the program on the board. The new one plays at once if the previous one plays.
     ///
-    /// Layers of both programs keep what was set of them while they played: whether they are on, their gain, and a
-    /// trigger. The gains are kept while the drive can give what they ask for.
+    /// The change is made between two ticks, unless the pictures of both do not fit on the board together.
     ///
-    /// If the board refuses the program, the one before plays on. After any other error while the empty scene plays, it
-    /// stays.
+    /// Layers of both programs keep their live settings: on or off, gain and trigger. The gains are kept only if the
+    /// drive can reach the resulting friction.
+    ///
+    /// If the board refuses the program, the previous one continues. After any other error while the empty scene plays,
+    /// the empty scene stays.
     pub fn replace(&mut self, program: Program) -> Result<Replaced, PlayError> {
         let (layers, dropped_gains) = match &self.playing {
             Some(before) => before.followed_by(program),
@@ -120,7 +122,7 @@ impl<L: Link + Recorded> Player<L> {
         Ok(Replaced { dropped_gains, ..self.replace_layers(layers)? })
     }
 
-    /// As [`Self::replace`], with all layers as the program's file sets them.
+    /// Like [`Self::replace`], with all layers as set in the program's file.
     pub fn replace_anew(&mut self, program: Program) -> Result<Replaced, PlayError> {
         self.replace_layers(LiveLayers::new(program))
     }
@@ -138,7 +140,8 @@ impl<L: Link + Recorded> Player<L> {
         Ok(Replaced { faded_out, dropped_gains: None })
     }
 
-    /// Puts a program on the board after its pictures were removed. Puts the one before back if the board refuses it.
+    /// Replaces the program after removing the pictures of the previous one. Restores the previous one if the board
+    /// refuses.
     fn replace_alone(&mut self, layers: &LiveLayers) -> Result<(), PlayError> {
         let empty = LiveLayers::new(layers.program().without_layers());
         self.upload(&empty)?;
@@ -156,7 +159,7 @@ impl<L: Link + Recorded> Player<L> {
         upload::upload(&mut self.device, layers.program(), layers.settings(), &mut ignore_progress)
     }
 
-    /// The board has this program from now on.
+    /// Records that the board has this program.
     fn set_playing(&mut self, layers: LiveLayers) -> Result<(), PlayError> {
         self.tell_replaced(layers.program())?;
         let changed = (0..).zip(layers.settings().iter().zip(&layers.program().start));
@@ -181,15 +184,15 @@ impl<L: Link + Recorded> Player<L> {
         self.recorder_mut().scene_replaced(program, &limits)
     }
 
-    /// Switches a layer by its name or number, or sets its gain; `None` leaves as it is. Returns the change, which has
-    /// a notice on what is clamped from now on.
+    /// Switches a layer by its name or number, or sets its gain; `None` leaves either unchanged. Returns the change,
+    /// which has a notice of the layers that are clamped from now on.
     pub fn change_layer(&mut self, layer: &str, on: Option<bool>, gain: Option<f32>) -> Result<LayerChange, PlayError> {
         let change = self.layers()?.change(layer, on, gain)?;
         self.send(&change)?;
         Ok(change)
     }
 
-    /// Switches a layer that is off on, by its name or number, and off again `duration_s` seconds later; see
+    /// Switches on a layer that is off, and off again after `duration_s` seconds. `layer` is its name or number; see
     /// [`LiveLayers::trigger`].
     pub fn trigger(&mut self, layer: &str, duration_s: Option<f64>) -> Result<LayerChange, PlayError> {
         let now = self.device.now();
@@ -212,7 +215,7 @@ impl<L: Link + Recorded> Player<L> {
         self.playing.as_ref().ok_or(PlayError::NothingPlays)
     }
 
-    /// Sends a change to the board, and takes over what the board has taken of it.
+    /// Sends a change to the board, and applies the part that the board accepted.
     fn send(&mut self, change: &LayerChange) -> Result<(), DeviceError> {
         let Self { device, playing, .. } = self;
         let Some(layers) = playing else { return Ok(()) };
@@ -228,8 +231,8 @@ impl<L: Link + Recorded> Player<L> {
         Ok(())
     }
 
-    /// Switches the layers that are triggered as their patterns say, and off at the end. [`Self::step`] and
-    /// [`Self::wait`] do it too.
+    /// Switches triggered layers according to their patterns, and off at the end. [`Self::step`] and [`Self::wait`] do
+    /// this as well.
     pub fn end_triggers(&mut self) -> Result<(), PlayError> {
         let now = self.device.now();
         while let Some((record, change)) = self.playing.as_ref().and_then(|layers| layers.next_switch(now)) {
@@ -264,11 +267,11 @@ impl<L: Link + Recorded> Player<L> {
         self.feed.as_ref().is_some_and(|feed| feed.is_over(&self.device))
     }
 
-    /// Lets at most `time_max` pass on the board, until a trigger switches its layer next; records the ticks, and sends
-    /// samples.
+    /// Advances the board by at most `time_max`, or until a trigger next switches its layer. Records the ticks, and
+    /// sends samples.
     ///
-    /// Returns how much time has passed. Fails when the connection is lost or when the board stopped without a stop
-    /// command; what happened until then has been recorded.
+    /// Returns the time that has passed. Fails if the connection is lost, or if the board stopped without a stop
+    /// command; everything until then has been recorded.
     pub fn step(&mut self, time_max: Duration) -> Result<Duration, PlayError> {
         self.end_triggers()?;
         let time = self.step_max().min(time_max).min(self.time_left());
@@ -279,7 +282,7 @@ impl<L: Link + Recorded> Player<L> {
         Ok(time)
     }
 
-    /// Lets `duration` pass on the board, as [`Self::step`] does. A board that stops by itself is no error: see
+    /// Advances the board by `duration`, as [`Self::step`] does. A board that stops by itself is not an error: see
     /// [`Self::state`].
     pub fn wait(&mut self, duration: Duration) -> Result<(), PlayError> {
         let end = self.device.now() + duration;
@@ -329,8 +332,7 @@ impl<L: Link + Recorded> Player<L> {
 
     /// Sets the output to zero and disarms the board. With a latched fault the output is zero already.
     ///
-    /// Nothing but the commands is sent until the board has answered, so a board that they do not reach falls silent by
-    /// its host timeout.
+    /// Only these commands are sent until the board answers. If they do not reach the board, its host timeout stops it.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
         if self.state == State::Faulted {
             return Ok(());
@@ -347,7 +349,7 @@ impl<L: Link + Recorded> Player<L> {
             stopped => stopped.and_then(|()| self.device.disarm()),
         };
         (self.state, self.fault) = match stopped {
-            // The board has latched a fault that this host has not heard of.
+            // The board has latched a fault that it has not yet reported to this host.
             Err(DeviceError::Refused { refusal: Refusal::Faulted(fault), .. }) => (State::Faulted, Some(fault)),
             Err(DeviceError::Refused { refusal: Refusal::WrongState(State::Faulted), .. }) => (State::Faulted, None),
             disarmed => disarmed.map(|()| (State::Disarmed, None))?,
@@ -398,8 +400,8 @@ impl<L: Link + Recorded> Player<L> {
     }
 }
 
-/// Refuses a program whose finger was not measured at the voltage or load that it needs, unless the board is simulated.
-/// [`Player::start`] and [`Player::replace`] ask this, too; a caller asks it before it writes anything.
+/// Refuses a program whose finger was not measured at the required voltage or load, unless the board is simulated.
+/// [`Player::start`] and [`Player::replace`] check this, too; callers check it before they write anything.
 pub fn check_measured(program: &Program, board: BoardKind) -> Result<(), PlayError> {
     let warning = program.warnings().find(|warning| !board.is_simulated() && warning.is_refused_by_boards());
     warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning: warning.to_string() }))

@@ -6,14 +6,13 @@ use frixel_wire::message::Telemetry;
 
 /// A link, or a byte stream, with a record of what the board at its other end plays.
 pub trait Recorded {
-    /// What records the play.
+    /// The recorder of the play.
     type Recorder: PlayListener;
 
-    /// What records the play.
+    /// The recorder of the play.
     fn recorder_mut(&mut self) -> &mut Self::Recorder;
 
-    /// The scene begins to play. The first time, this starts the record, and the stroke of a finger that is simulated
-    /// beside the board.
+    /// Called when the scene begins to play. The first call starts the record, and the stroke of a simulated finger.
     fn begin(&mut self) -> Result<(), LinkClosed> {
         Ok(())
     }

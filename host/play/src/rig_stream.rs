@@ -11,10 +11,10 @@ use frixel_wire::message::Telemetry;
 
 use crate::recorded::Recorded;
 
-/// How long a tick waits for its telemetry.
+/// Longest time that a tick waits for its telemetry.
 const HOLD: Duration = Duration::from_millis(200);
 
-/// Is called with every tick from the start of the record on.
+/// Callback for every tick from the start of the record on.
 type Observer<'a> = Box<dyn FnMut(&RigTick) + 'a>;
 
 /// The host's end of the serial line to a rig, with the record of what its finger feels.
@@ -29,7 +29,7 @@ pub struct RigStream<'a, R> {
     received: Vec<u8>,
 }
 
-/// The recorder, and the ticks that it has not got yet.
+/// The recorder, and the ticks that were not yet passed to it.
 #[derive(Default)]
 struct Record<'a> {
     recorder: Recorder,
@@ -37,11 +37,12 @@ struct Record<'a> {
     is_started: bool,
     /// The board's state in the last tick, if the rig sees it.
     state: Option<State>,
-    /// Ticks whose telemetry may still come.
+    /// Ticks that wait for their telemetry.
     held: VecDeque<Observation>,
-    /// Telemetry whose tick may still come, on the rig's clock.
+    /// Telemetry that waits for its tick, on the rig's clock.
     telemetry: VecDeque<Telemetry>,
-    /// The rig's tick less the board's, once it is known: exactly, or to a millisecond where the first telemetry tells.
+    /// The rig's tick minus the board's, once known: exact, or to a millisecond if it is derived from the first
+    /// telemetry.
     tick_offset: Option<u32>,
 }
 
@@ -173,7 +174,7 @@ impl<R: BoardRig> Recorded for RigStream<'_, R> {
         if self.rig.sees_board() {
             return;
         }
-        // Ticks that the rig has not told of yet. What is wrong with it was said, or is said at the next read.
+        // Ticks that the rig has not reported yet. Its error was reported, or is reported at the next read.
         let Self { rig, record, received } = self;
         let _ = rig.run(rig.tick(), received, &mut |tick| record.take(tick));
         record.record_all_but(0);

@@ -37,7 +37,7 @@ pub type SimPlayer<'a> = Player<PollingLink<RigStream<'a, Rig<'a>>>>;
 pub struct Simulated {
     /// Recorder with the felt friction and its reference.
     pub recorder: Recorder,
-    /// What the board said of itself.
+    /// The board's hello.
     pub board: Hello,
     /// Traffic counters of the serial line.
     pub counters: Counters,
@@ -66,8 +66,7 @@ impl From<DeviceError> for SimulationError {
 }
 
 impl Simulation {
-    /// Under one stroke from its beginning to its end, with a reference that goes through the finger, and a row for each
-    /// [`FidelitySample`].
+    /// Simulates one complete stroke, with a row for each [`FidelitySample`]. The reference goes through the finger.
     pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64) -> Self {
         let seconds = stroke.duration_s();
         let ticks_per_row = ticks_per_sample(rig.board.tick_hz);
@@ -89,14 +88,14 @@ impl Simulation {
         Ok(if self.through_finger { recorder.through_finger() } else { recorder })
     }
 
-    /// The board, switched on, in its world.
+    /// The board after power-on, in its world.
     pub fn rig<'a>(&self, memory: &'a mut BoardMemory) -> Result<Rig<'a>, WorldError> {
         Rig::new(memory, &self.rig, self.stroke.clone(), self.seed)
     }
 }
 
 impl Simulated {
-    /// What the finger felt and the reference, row by row.
+    /// Felt friction and its reference, row by row.
     pub fn samples(&mut self) -> Vec<FidelitySample> {
         let start_s = self.recorder.start_s().unwrap_or(0.0);
         self.recorder.take_rows().iter().map(|row| FidelitySample::of_row(row, start_s)).collect()
@@ -115,7 +114,7 @@ pub fn simulate(
     simulate_by(program, simulation, feed, &mut |player| play_on(player, goes_on))
 }
 
-/// As [`simulate`], while `play` lets the time pass, and changes what plays.
+/// Like [`simulate`], but `play` advances the time, and may change what plays.
 pub fn simulate_by(
     program: &Program,
     simulation: &Simulation,

@@ -7,17 +7,19 @@ use std::time::Duration;
 pub(crate) struct Trigger {
     /// Number of the record, from zero.
     pub(crate) record: u8,
-    /// When it ends with the record off.
+    /// Time at which it ends with the record off.
     pub(crate) ends_at: Duration,
-    /// When it switches the record next.
+    /// Time of its next switch.
     pub(crate) next_at: Duration,
-    /// Index in the pattern of the duration that ends then.
+    /// Index in the pattern of the duration that ends at the next switch.
     pub(crate) step: usize,
 }
 
 impl Trigger {
-    /// A trigger that begins at the time `now` with the record on. `pattern` has the durations on, off, on, and so on,
-    /// which begin again after the last; empty: on all the time.
+    /// Creates a trigger that begins at the time `now` with the record on.
+    ///
+    /// `pattern` has the durations on, off, on, and so on, and repeats after the last one. An empty pattern is on all
+    /// the time.
     pub(crate) fn new(record: u8, now: Duration, ends_at: Duration, pattern: &[Duration]) -> Self {
         let next_at = pattern.first().map_or(ends_at, |first| now.saturating_add(*first).min(ends_at));
         Self { record, ends_at, next_at, step: 0 }

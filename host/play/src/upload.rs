@@ -1,12 +1,11 @@
-//! From a compiled program to the bytes that a board takes.
+//! Uploads of compiled programs to a board.
 
 use std::ops::ControlFlow;
 
 use frixel_driver::{Bitmap, Device, DeviceError, Link, Progress, Upload};
 use frixel_scene::{LayerSetting, Program};
 
-/// Disarms a board, whatever state an earlier client left it in, then uploads the program, arms the board and plays.
-/// `progress` may break the upload off.
+/// Disarms the board in any state, uploads the program, arms the board and plays. `progress` may cancel the upload.
 pub fn start<L: Link>(
     device: &mut Device<L>,
     program: &Program,
@@ -25,8 +24,8 @@ pub(crate) fn switch_off<L: Link>(device: &mut Device<L>, settings: &[LayerSetti
     off.into_iter().try_for_each(|(record, setting)| device.set_layer(record, false, setting.gain))
 }
 
-/// Disarms a board, whatever state an earlier client left it in, then uploads the program without playing it. Returns
-/// the bytes that this took on the line to the board.
+/// Disarms the board in any state, then uploads the program without playing it. Returns the number of bytes that this
+/// took on the line to the board.
 pub fn load<L: Link>(
     device: &mut Device<L>,
     program: &Program,
@@ -38,8 +37,8 @@ pub fn load<L: Link>(
     Ok(device.counters().wire_bytes - before)
 }
 
-/// Uploads a program with these settings of its records and commits it, in any state of the board. The layers that are
-/// off ask for nothing, and are yet to be [switched off](switch_off) once the board plays.
+/// Uploads a program with these settings of its records, and commits it, in any state of the board. Layers that are off
+/// have a gain of 0 until they are [switched off](switch_off) once the board plays.
 pub(crate) fn upload<L: Link>(
     device: &mut Device<L>,
     program: &Program,

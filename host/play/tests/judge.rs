@@ -1,4 +1,4 @@
-//! The judge on the simulated board: what is felt of scenes whose answer a person knows.
+//! The judge on the simulated board, for scenes whose verdict is common sense.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::collections::BTreeMap;
@@ -233,8 +233,7 @@ fn scenes() -> Vec<PathBuf> {
     paths
 }
 
-/// The first comment of each scene has what a person would say before anybody computes anything: `# felt: NAME, NAME`
-/// for each verdict.
+/// The first comment of each scene states the common-sense verdicts: `# felt: NAME, NAME` for each verdict.
 #[test]
 fn the_judge_and_common_sense_agree() {
     let mut apart = Vec::new();

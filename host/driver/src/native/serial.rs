@@ -1,9 +1,9 @@
 //! A serial port as a [`Link`].
 //!
-//! The link has two threads. One thread reads. The other writes the queued frames in order, and sends the pings
-//! that are due if the application has made a call within the keep-alive timeout. No
-//! call waits for the operating system to accept bytes: a port whose other end does not read can block a write for
-//! ever, and then only the writing thread is blocked.
+//! The link has two threads. One thread reads. The other writes the queued frames in order, and sends the pings that
+//! are due if the application has made a call within the keep-alive timeout. No call waits for the operating system to
+//! accept bytes: a port whose other end does not read can block a write for ever, and then only the writing thread is
+//! blocked.
 
 mod shared;
 

@@ -1,4 +1,4 @@
-//! Commands, answers, pings and events when all is well, and when a frame gets lost.
+//! Commands, answers, pings and events, on a good line and with lost frames.
 
 use std::time::Duration;
 
@@ -24,19 +24,19 @@ pub(crate) fn reconnected(device: Device<VirtualLink>) -> Device<VirtualLink> {
     Device::connect(device.into_link()).unwrap()
 }
 
-/// A device on a line on which all is well.
+/// A device on a good line.
 pub(crate) fn virtual_board() -> Device<VirtualLink> {
     connected(VirtualLine::new())
 }
 
-/// A device whose board says that it has these features.
+/// A device whose board reports these features.
 fn with_features(features: u32) -> Device<VirtualLink> {
     let mut line = VirtualLine::new();
     line.change_hello(move |hello| hello.features = features);
     connected(line)
 }
 
-/// Uploads a scene of this host timeout and commits it.
+/// Uploads and commits a scene with this host timeout.
 pub(crate) fn commit(device: &mut Device<VirtualLink>, host_timeout_s: f32) {
     let scene = scene(host_timeout_s);
     let upload = Upload { scene: &scene, bitmaps: Vec::new() };
@@ -165,7 +165,7 @@ fn pings_follow_the_committed_scenes_host_timeout() {
     }
 }
 
-/// Two pings in a row are hit, then one to three get through. The board is never without one for a host timeout.
+/// Two pings in a row are damaged, then one to three get through. The board never goes a host timeout without one.
 #[test]
 fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
     let hit = [Fate::Lost, Fate::Tail(1)].into_iter().chain((0..12).map(Fate::Damaged));
@@ -187,8 +187,7 @@ fn a_scene_plays_on_when_two_pings_in_a_row_are_damaged_or_lost() {
     }
 }
 
-/// The old scene's timeout counts until the new one is committed, and that of a scene that was there before is not
-/// known.
+/// The old scene's timeout applies until the new one is committed. The timeout of an earlier host's scene is unknown.
 #[test]
 fn pings_suit_any_scene_on_an_armed_board_until_the_own_one_is_committed() {
     let scene = scene(1.0);
@@ -245,7 +244,7 @@ fn busy_is_tried_again_for_a_second() {
     }
 }
 
-/// The board armed at the first command; the second one is refused, and that is as good.
+/// The first copy of the command armed the board. The refusal of the second copy therefore counts as success.
 #[test]
 fn a_lost_answer_does_not_fail_a_command() {
     let mut line = VirtualLine::new();

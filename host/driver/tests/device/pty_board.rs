@@ -11,7 +11,7 @@ use serialport::{SerialPort, TTYPort};
 
 use crate::virtual_link::VirtualLine;
 
-/// How much slower the clock of a [`Patient`] link runs.
+/// Factor by which the clock of a [`Patient`] link is slowed down.
 const PATIENCE: u32 = 40;
 
 /// A serial link with a slow clock, so that the driver's deadlines hold on a machine that is busy with other things:
@@ -80,7 +80,7 @@ impl PtyBoard {
         }
     }
 
-    /// Waits until the board is as wanted; a test that waits in vain fails.
+    /// Waits until `wanted` holds for the line; fails after two minutes.
     pub(crate) fn until(&self, wanted: impl Fn(&VirtualLine) -> bool) {
         let started = Instant::now();
         while !wanted(&self.line.lock().unwrap()) {
@@ -96,8 +96,8 @@ impl Drop for PtyBoard {
     }
 }
 
-/// Time passes on the board as it takes bytes, and otherwise a tick in 2 ms: far slower than on the machine, so that it
-/// bears with a host that is not given the processor.
+/// Advances the board's time as it receives bytes, and otherwise by one tick every 2 ms: far slower than real time, to
+/// tolerate a host that gets no processor time.
 fn serve(mut master: TTYPort, line: &Mutex<VirtualLine>, unplugged: &AtomicBool) {
     master.set_timeout(Duration::from_millis(2)).unwrap();
     let mut to_host = master.try_clone().unwrap();

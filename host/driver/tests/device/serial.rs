@@ -55,7 +55,7 @@ fn a_scene_plays_over_a_serial_port() {
     assert_eq!(board.line.lock().unwrap().state, State::Active);
 }
 
-/// That they end when the application hangs, `host/python/tests` shows.
+/// `host/python/tests` checks that they end when the application hangs.
 #[test]
 fn pings_go_out_while_nobody_calls() {
     let board = PtyBoard::start();
@@ -131,7 +131,7 @@ fn a_port_in_use_is_refused() {
     assert_eq!(error, PortError::Busy { port: board.path.clone() });
 }
 
-/// Whoever comes while the earlier host is still on its way out waits for it.
+/// A client that opens the port while the previous one is still closing it waits for that.
 #[test]
 fn a_port_that_is_let_go_soon_opens() {
     let board = PtyBoard::start();
@@ -153,7 +153,7 @@ fn a_file_that_is_no_port_is_refused() {
     assert!(matches!(error, PortError::NotOpened { .. }), "{error}");
 }
 
-/// The operating system stops taking bytes long before this; neither writing nor dropping may wait for it.
+/// The operating system stops accepting bytes long before this point. Neither a write nor a drop may wait for it.
 #[test]
 fn an_end_that_does_not_read_blocks_nobody() {
     let (master, slave) = TTYPort::pair().unwrap();

@@ -1,4 +1,4 @@
-//! Boards that take long for each frame: every call ends, and its caller can say what it waits for.
+//! Slow boards: every call ends, and its caller can report what it waits for.
 
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -13,7 +13,7 @@ use crate::virtual_link::{BOARD, VirtualLine, VirtualLink, line_of};
 
 const SECOND: Duration = Duration::from_secs(1);
 
-/// A board that takes this long for every frame, one after the other, once it has answered the hello.
+/// A board that takes `time_per_frame` for each frame after the hello, one frame at a time.
 fn slow(time_per_frame: Duration) -> Device<VirtualLink> {
     let mut device = virtual_board();
     line_of(&mut device).board_time_per_frame = time_per_frame;
@@ -33,8 +33,8 @@ fn uploaded(time_per_frame: Duration) -> (Result<(), DeviceError>, [u64; 3], Dur
     (result, [frames, pings, after.wire_bytes - before.wire_bytes], took)
 }
 
-/// Its pings would otherwise take the time of almost all frames: 735 of 762 in 150 s. Chunks that have arrived are not
-/// sent again: there is hardly more to send than the picture's 136 chunks.
+/// Otherwise nearly all of its frames would be pings: 735 of 762 in 150 s. Chunks that have arrived are not resent:
+/// little more than the picture's 136 chunks is sent.
 #[test]
 fn a_slow_board_is_drowned_neither_in_pings_nor_in_chunks() {
     for ms in [50, 100, 120] {
@@ -71,8 +71,8 @@ fn one_request_takes_10_s_at_most() {
     assert!(longest <= 10 * SECOND, "{longest:?}");
 }
 
-/// A board that takes chunks, and never says so: it drops those of an upload that it has refused, and the refusal is
-/// turned into its opposite.
+/// A board that takes chunks and never acknowledges them. It drops the chunks of an upload that it has refused, and the
+/// test turns the refusal into an acceptance.
 #[test]
 fn an_upload_ends_10_s_after_the_last_acknowledged_byte() {
     let scene = vec![7; 2_000_000];

@@ -39,8 +39,8 @@ fn a_start_level_is_fifty_milliseconds_where_the_buffer_has_that() {
     assert_eq!([level(1), level(1_000), level(8_000), level(40_000)], [1, 50, 400, 800]);
 }
 
-/// The board has room for 1,024 samples, and plays one a second: that many are sent, in whole frames as long as there
-/// are.
+/// The board has room for 1,024 samples, and plays one per second. Exactly that many are sent, in full frames where
+/// possible.
 #[test]
 fn no_more_is_sent_than_the_board_has_room_for() {
     let mut device = playing();

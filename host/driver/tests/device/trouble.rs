@@ -1,4 +1,4 @@
-//! Boards that are absent, of another version, silent, reset or unplugged. Each is known within a second of virtual
+//! Boards that are absent, of another version, silent, reset or unplugged. Each is reported within a second of virtual
 //! time.
 
 use std::time::Duration;
@@ -22,12 +22,12 @@ fn refused_connection(line: VirtualLine) -> DeviceError {
     }
 }
 
-/// Nothing of what the board says arrives any more.
+/// Drops everything that the board sends from now on.
 fn silence(device: &mut Device<VirtualLink>) {
     line_of(device).to_host_weather = Box::new(|_, _| Fate::Lost);
 }
 
-/// A line whose board says this hello, and gets nothing but hello requests.
+/// A line whose board sends a modified hello, and receives only hello requests.
 fn with_hello(spoil: impl Fn(&mut Hello) + Send + 'static) -> VirtualLine {
     let mut line = VirtualLine::new();
     line.change_hello(spoil);
@@ -45,7 +45,7 @@ fn a_silent_port_gives_a_timeout() {
     assert!(error.to_string().starts_with("no frixel board answered on the virtual line within 750 ms; "), "{error}");
 }
 
-/// A board that accepts a command and says that it did something else.
+/// The board accepts a command, and then reports another state.
 #[test]
 fn a_state_that_the_command_does_not_lead_to_is_an_error() {
     type Call = fn(&mut Device<VirtualLink>) -> Result<(), DeviceError>;
@@ -145,7 +145,7 @@ fn lost_hellos_are_sent_again() {
     }
 }
 
-/// The board counts from its last hello on, the host from the first answer; the next ping brings the two together.
+/// The board counts from its last hello, the host from the first answer. The next ping reconciles the two counts.
 #[test]
 fn hellos_that_are_answered_late_do_not_confuse_the_credit() {
     let mut line = VirtualLine::new();

@@ -1,5 +1,6 @@
-//! Bulk uploads: what arrives, what it costs, and that credit is kept. The virtual line itself refuses bytes beyond the
-//! credit, and the board a bitmap or a scene with a wrong byte.
+//! Bulk uploads: their content, their cost, and their use of credit.
+//!
+//! The virtual line rejects bytes beyond the credit, and the board rejects a bitmap or a scene with a wrong byte.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -17,7 +18,7 @@ use crate::virtual_link::{BOARD, Fate, VirtualLine, VirtualLink, WINDOW, Weather
 
 const WIDTH: u16 = 250;
 
-/// Samples that look like nothing in particular.
+/// Pseudo-random samples.
 pub(crate) fn samples(len: usize) -> Vec<u8> {
     let mut random = Random::new(1);
     (0..len).map(|_| random.byte()).collect()
@@ -67,7 +68,7 @@ fn at_least_95_percent_of_the_line_is_payload() {
     assert!(share >= 0.95, "{share}");
 }
 
-/// Credit is used so well that the line never rests, but for the round trips of the commands.
+/// The credit keeps the line busy, except during the round trips of the commands.
 #[test]
 fn an_upload_takes_the_time_of_its_bytes() {
     let mut line = VirtualLine::new();
@@ -82,7 +83,7 @@ fn an_upload_takes_the_time_of_its_bytes() {
     assert!((1.0..1.1).contains(&(took_s / line_time_s)), "{took_s} s for {line_time_s} s of bytes");
 }
 
-/// Else a line that refuses bytes beyond the credit would prove nothing.
+/// Without this, a line that rejects bytes beyond the credit would prove nothing.
 #[test]
 fn a_slow_board_fills_the_window() {
     let mut line = VirtualLine::new();
@@ -92,8 +93,8 @@ fn a_slow_board_fills_the_window() {
     assert!(line.most_under_way > usize::from(WINDOW) * 9 / 10, "{} bytes", line.most_under_way);
 }
 
-/// Pings go out while an upload waits for credit, and the line refuses them too when they go beyond it: two while the
-/// board pauses, and more when it answers again.
+/// Pings go out while an upload waits for credit: two while the board pauses, and more once it answers again. The line
+/// also rejects pings beyond the credit.
 #[test]
 fn pings_have_credit_of_their_own() {
     for armed in [false, true] {
@@ -157,7 +158,7 @@ fn one_lost_or_damaged_chunk_costs_no_more_than_a_window() {
     }
 }
 
-/// Far more than a window is lost in all: credit comes back, or the upload would stop for good.
+/// In total, far more than a window is lost. Credit must recover, or the upload would stall for good.
 #[test]
 fn lost_bytes_do_not_use_up_the_credit() {
     let mut line = VirtualLine::new();
@@ -170,7 +171,7 @@ fn lost_bytes_do_not_use_up_the_credit() {
     assert!(device.link_mut().written().bytes > 62_500 + 4 * u64::from(WINDOW));
 }
 
-/// The last chunk has no later one behind it that would show the gap.
+/// No later chunk reveals the loss of the last one.
 #[test]
 fn a_lost_last_chunk_is_sent_again() {
     let mut line = VirtualLine::new();
@@ -251,7 +252,7 @@ fn a_bitmap_of_another_size_is_refused_before_anything_is_sent() {
     assert_eq!(device.counters(), before);
 }
 
-/// A board that has every chunk, and asks for all of them again.
+/// The board has received every chunk, and requests all of them again.
 #[test]
 fn a_board_that_forgets_every_upload_is_given_up() {
     let mut line = VirtualLine::new();

@@ -1,5 +1,6 @@
-//! A line to the simulated board in virtual time. It loses, damages and delays frames, and answers in the board's place
-//! what no board answers.
+//! A line to the simulated board in virtual time.
+//!
+//! The line loses, damages and delays frames. It also fakes answers that the simulated board never gives.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
@@ -19,27 +20,27 @@ pub(crate) const WINDOW: u16 = BOARD.limits.receive_window_bytes;
 /// 2 Mbaud, ten bits a byte.
 const BYTES_PER_S: u32 = 200_000;
 
-/// What becomes of a frame on the line.
+/// Outcome of a frame on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fate {
     Arrives,
     Lost,
-    /// Only so many of its last bytes arrive.
+    /// Only this number of bytes at its end arrives.
     Tail(usize),
-    /// This byte is changed.
+    /// The byte at this index is changed.
     Damaged(usize),
 }
 
-/// Decides what becomes of a frame, by its number from zero and its bytes.
+/// Chooses the outcome of a frame from its number, counted from zero, and its bytes.
 pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate + Send>;
 
-/// The refusal with which a command is answered that the board does not get, if any.
+/// Returns the refusal of a command that is kept from the board; `None` passes the command on.
 type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
 
-/// Changes what the board says.
+/// Modifies a message from the board.
 type Change = Box<dyn Fn(&mut Payload) + Send>;
 
-/// A link over the line, which pings as every link without a thread does.
+/// A link over the line. It pings like every link without a thread.
 pub(crate) type VirtualLink = PollingLink<VirtualLine>;
 
 /// The line of a device.
@@ -53,30 +54,30 @@ pub(crate) struct VirtualLine {
     pub(crate) state: State,
     pub(crate) to_board_weather: Weather,
     pub(crate) to_host_weather: Weather,
-    /// The cable is pulled at this time.
+    /// Time at which the cable is pulled.
     pub(crate) pulled_at: Option<Duration>,
-    /// Time that a frame takes more than its bytes do.
+    /// Delay of a frame beyond the transfer time of its bytes.
     pub(crate) board_delay: Duration,
-    /// Time that the board takes for each frame, one after the other.
+    /// Processing time of the board per frame. Frames are processed one at a time.
     pub(crate) board_time_per_frame: Duration,
-    /// From when to when the board looks at nothing, as while it erases flash.
+    /// Interval in which the board reads nothing, as while it erases flash.
     pub(crate) board_pause: Range<Duration>,
-    /// Most bytes that were on the way to the board, or there and not looked at.
+    /// Largest number of bytes in flight to the board or unread there.
     pub(crate) most_under_way: usize,
-    /// Commands that arrived at the board, pings left out.
+    /// Commands that arrived at the board, without pings.
     pub(crate) commands: Vec<Command>,
     pub(crate) pings: u32,
     pub(crate) hellos: u32,
     /// Longest time without a good frame since the first hello.
     pub(crate) longest_silence: Duration,
-    /// The refusal with which a command is answered that the board does not get. A ping takes its place on the line.
+    /// Chooses commands that are refused in the board's place. A ping replaces each of them on the line.
     pub(crate) refuse: Option<Refuse>,
-    /// Changes what the board says.
+    /// Modifies messages from the board.
     says: Option<Change>,
-    /// Arrives in front of the board's first frame.
+    /// Bytes that arrive before the board's first frame.
     pub(crate) garbage: Vec<u8>,
     refused: BTreeMap<u16, Refusal>,
-    /// Frames that the board does not look at yet, and when it does.
+    /// Frames that the board has not read yet, with the times at which it reads them.
     waiting: VecDeque<(Duration, Vec<u8>)>,
     board_free_at: Duration,
     last_heard: Duration,
@@ -93,7 +94,7 @@ impl VirtualLine {
         Self::to(BOARD, BYTES_PER_S)
     }
 
-    /// The line to a board that has just started, for so many bytes a second in each direction.
+    /// Creates a line to a board that has just started, with `bytes_per_s` bytes per second in each direction.
     pub(crate) fn to(board: Board, bytes_per_s: u32) -> Self {
         let config = RigConfig { board, baud: 10 * bytes_per_s, ..RigConfig::of(board) };
         let nowhere = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).unwrap();
@@ -144,12 +145,12 @@ impl VirtualLine {
         }));
     }
 
-    /// Bytes that the board has not looked at.
+    /// Number of bytes that the board has not read yet.
     pub(crate) fn under_way(&mut self) -> usize {
         self.waiting.iter().map(|(_, bytes)| bytes.len()).sum::<usize>() + self.rig.line_to_board_mut().queued()
     }
 
-    /// Lets a tick pass.
+    /// Advances the board by one tick.
     pub(crate) fn step(&mut self) {
         let now = self.now();
         while let Some((_, bytes)) = self.waiting.pop_front_if(|(at, _)| *at <= now) {
@@ -164,7 +165,7 @@ impl VirtualLine {
         }
     }
 
-    /// Notes what arrives at the board.
+    /// Records the frames that arrive at the board.
     fn look_at(&mut self, mut bytes: &[u8]) {
         let now = self.now();
         while let Some(payload) = self.at_board.next_frame(&mut bytes) {

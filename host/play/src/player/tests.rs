@@ -10,7 +10,7 @@ use frixel_wire::hello::{BoardKind, BoardLimits};
 
 use super::*;
 
-/// The line to a simulated board, and what the player has told of its play.
+/// The line to a simulated board, and the player's notifications of its play.
 struct Line {
     rig: Rig<'static>,
     told: Told,
@@ -18,7 +18,7 @@ struct Line {
     commanded_max_n: f32,
 }
 
-/// What a listener is told, a word each.
+/// Notifications to a listener, one word each.
 #[derive(Debug, Default, PartialEq)]
 struct Told(Vec<String>);
 
@@ -276,7 +276,7 @@ fn a_trigger_of_a_stream_without_samples_is_refused() {
     player.trigger("voice", Some(0.05)).unwrap();
 }
 
-/// Disarmed by its host timeout, the board refuses to stop, and its output is zero all the same.
+/// A board disarmed by its host timeout refuses to stop; its output is zero all the same.
 #[test]
 fn a_board_that_has_left_the_play_by_itself_is_stopped_without_an_error() {
     let mut player = playing(ping(true));

@@ -146,7 +146,7 @@ fn nothing_conductive_is_behind_the_electrode() {
     assert!(safety.contains("within 20 mm behind") && safety.contains("**no more than 50 pF**"));
 }
 
-/// Nobody who switches the rails off relies on the firmware, and no wire ties the supply's input to the common.
+/// Switching the rails off does not rely on the firmware, and no wire ties the supply's input to the common.
 #[test]
 fn the_rails_have_a_switch_of_their_own_in_front_of_the_insulation() {
     let carrier = read().unwrap();

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Of the amplifier's enable, only the switch's second pole and a resistor to the common know; before the pole,
+/// The amplifier's enable connects only to the switch's second pole and to a resistor to the common. Before the pole,
 /// both one-shots must agree, and the second is fed by SYNC.
 #[test]
 fn the_enable_goes_through_both_one_shots_and_the_switch() {
