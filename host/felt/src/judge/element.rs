@@ -12,7 +12,7 @@ pub(super) const SPEEDS_M_PER_S: [f64; 3] = [0.02, 0.05, 0.1];
 
 /// Longest pause between two bursts of a judged program, s: a finger that crosses 4 mm at the slowest speed then meets
 /// a burst. A longer pause is a reason of its own.
-const PAUSE_MAX_S: f32 = 0.2;
+pub(super) const PAUSE_MAX_S: f32 = 0.2;
 
 /// A layer of a program, and the way across it.
 #[derive(Clone, Debug)]

@@ -9,9 +9,9 @@ use super::texture::SUMMED_S;
 use super::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict};
 
 /// Duration of a touch of an element, s: strokes may miss a less frequent burst. Assumed.
-const TOUCH_S: f64 = 1.0;
+pub(super) const TOUCH_S: f64 = 1.0;
 /// Shortest perceptible burst, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
-const BURST_MIN_S: f64 = 2e-3;
+pub(super) const BURST_MIN_S: f64 = 2e-3;
 
 /// A reason why an element is not certainly perceived, or not as designed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -8,7 +8,7 @@ use crate::spectrum::Spectrum;
 /// Smallest number of samples for finding a component.
 const SAMPLES_MIN: usize = 64;
 /// Smallest fraction of the signal's power; a weaker component is a harmonic or numerical noise. Assumed.
-const POWER_PART_MIN: f64 = 0.05;
+pub(super) const POWER_PART_MIN: f64 = 0.05;
 /// Half width of a component, in bins: a Hann window spreads a sine over two bins on either side.
 const SPREAD_BINS: usize = 2;
 /// Half width of a component, as a factor of its frequency: a sixth of an octave on either side.

@@ -1,5 +1,5 @@
-//! Thresholds of touch, with their sources. Those quoted from memory are marked, and must be checked before anyone
-//! relies on them; `docs/inside/evidence.md` lists them.
+//! Thresholds of touch, with their sources. "Quoted from memory" marks a value to check before use;
+//! `docs/inside/evidence.md` lists all of them.
 
 use frixel_hil_sim::RELAXATION_LENGTH_M;
 use serde::{Deserialize, Serialize};
@@ -185,6 +185,36 @@ pub(super) fn lag_gain(wavelength_mm: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::judge::element::PAUSE_MAX_S;
+    use crate::judge::measure::{FINGERTIP_M, WAY_MAX_M};
+    use crate::judge::reason::{BURST_MIN_S, TOUCH_S};
+    use crate::judge::spectrum::POWER_PART_MIN;
+    use crate::judge::texture::SUMMED_S;
+
+    /// `docs/design/scenes.md` has these numbers in these sentences.
+    #[test]
+    #[allow(clippy::disallowed_methods, reason = "the test reads the documentation")]
+    fn the_guide_states_the_constants() {
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/design/scenes.md");
+        let page = std::fs::read_to_string(page).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+        let percent = 100.0 * POWER_PART_MIN;
+        for said in [
+            format!("`ln(F2 / F1) / ln {:.2}` of the total friction: below 1 it", 1.0 + WEBER_FRACTION),
+            format!("A Weber step is a factor of {:.2} in friction", 1.0 + WEBER_FRACTION),
+            format!("from {:.1} on it is felt", weber_steps_safe()),
+            format!("Weber fraction that was measured, {WEBER_FRACTION}, to the largest, {WEBER_FRACTION_SAFE}"),
+            format!("repeats faster than {TEXTURE_MIN_HZ} Hz under the finger"),
+            format!("less than {percent} % of the power"),
+            format!("a fingertip, which resolves {} mm", 1e3 * FINGERTIP_M),
+            format!("changes within {} mm", 1e3 * WAY_MAX_M),
+            format!("a burst below {} ms", 1e3 * BURST_MIN_S),
+            format!("sums the power of about {SUMMED_S:.1} s"),
+            format!("the longest are cut to {PAUSE_MAX_S} s"),
+        ] {
+            assert!(page.contains(&said), "docs/design/scenes.md does not say: {said}");
+        }
+        assert!(page.contains("pauses of more than a second") && TOUCH_S.to_bits() == 1.0_f64.to_bits());
+    }
 
     #[test]
     fn a_step_of_a_weber_fraction_is_one_step() {
