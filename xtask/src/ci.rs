@@ -9,7 +9,7 @@ use crate::bench::programs::{self, Pace};
 use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M3, M4F, M33, WASM, absolute, cargo_in, root, run, target_folder};
 use crate::fuzz::Extent;
 use crate::needs::{Machine, Missing, Need};
-use crate::{bench, budgets, fuzz, pico_rig, portability, python, studio_tests};
+use crate::{bench, budgets, fuzz, numbers, pico_rig, portability, python, studio_tests};
 
 /// The crate whose features an image selects.
 const SESSION: &str = "firmware/session";
@@ -208,13 +208,14 @@ fn images() -> Result<(), String> {
     cargo("NUCLEO behind 374 kOhm", NUCLEO, &programs, &[("FRIXEL_SERIES_KOHM", "374")])
 }
 
-/// Counts instructions, measures sizes and compares them with their limits. Also checks that an image that
-/// deliberately exceeds its budget is detected.
+/// Counts instructions, measures sizes and compares them with their limits and with the committed figures. Also checks
+/// that an image that deliberately exceeds its budget is detected.
 fn check_budgets() -> Result<(), String> {
     let figures = bench::bench()?;
     eprint!("{}", figures.table());
     let limits = budgets::read(&root().join("budgets.toml"))?;
     budgets::check(&limits, &figures)?;
+    numbers::check(&figures)?;
     bench::costs::check(&figures)?;
     Pace::ALL.into_iter().try_for_each(|pace| programs::check(pace, 0, programs::FEW))?;
     let broken = budgets::only(&limits, bench::BROKEN)?;

@@ -6,7 +6,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::bench::COMMITTED;
+use crate::bench::{COMMITTED, Figures};
 use crate::command::root;
 
 const PAGE: &str = "docs/inside/numbers.md";
@@ -93,7 +93,32 @@ const TABLES: [Table; 4] = [
 pub(crate) fn write() -> Result<(), String> {
     let path = root().join(PAGE);
     let page = read(PAGE)?;
-    fs::write(&path, replaced(&page, &generated(&read(COMMITTED)?)?)?).map_err(|error| format!("{PAGE}: {error}"))
+    fs::write(&path, replaced(&page, &generated(&committed()?)?)?).map_err(|error| format!("{PAGE}: {error}"))
+}
+
+/// Fails if a figure that was measured is not the committed one, on which the page's tables rest. The error lists them.
+pub(crate) fn check(measured: &Figures) -> Result<(), String> {
+    differences(measured, &committed()?).map_err(|differences| {
+        format!(
+            "{COMMITTED} is not what was measured:\n  {}\nrun `FRIXEL_BLESS=1 cargo xtask bench`, and then \
+             `cargo xtask numbers`",
+            differences.join("\n  ")
+        )
+    })
+}
+
+fn differences(measured: &Figures, committed: &BTreeMap<String, Value>) -> Result<(), Vec<String>> {
+    let difference = |name: &str| {
+        let (measured, committed) = (measured.get(name), committed.get(name).and_then(Value::as_u64));
+        let text = |figure: Option<u64>| figure.map_or("none".to_owned(), |figure| figure.to_string());
+        (measured != committed).then(|| format!("{name}: measured {}, committed {}", text(measured), text(committed)))
+    };
+    let found: Vec<String> = measured.names().filter_map(difference).collect();
+    if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+fn committed() -> Result<BTreeMap<String, Value>, String> {
+    serde_json::from_str(&read(COMMITTED)?).map_err(|error| format!("{COMMITTED}: {error}"))
 }
 
 fn read(path: &str) -> Result<String, String> {
@@ -109,9 +134,7 @@ fn replaced(page: &str, generated: &str) -> Result<String, String> {
 }
 
 /// The tables, of the committed figures.
-fn generated(bench: &str) -> Result<String, String> {
-    let figures: BTreeMap<String, Value> =
-        serde_json::from_str(bench).map_err(|error| format!("{COMMITTED}: {error}"))?;
+fn generated(figures: &BTreeMap<String, Value>) -> Result<String, String> {
     let date = figures.get("date").and_then(Value::as_str).ok_or_else(|| format!("{COMMITTED} has no date"))?;
     // Writing to a string cannot fail.
     let mut text = String::new();
@@ -155,13 +178,21 @@ mod tests {
     #[test]
     fn the_page_has_the_committed_figures() {
         let page = read(PAGE).unwrap();
-        let held = replaced(&page, &generated(&read(COMMITTED).unwrap()).unwrap()).unwrap();
+        let held = replaced(&page, &generated(&committed().unwrap()).unwrap()).unwrap();
         assert!(held == page, "{PAGE} is not what was measured: run `cargo xtask numbers`");
     }
 
     #[test]
+    fn a_figure_that_is_not_the_committed_one_is_named() {
+        let committed = BTreeMap::from([("a".to_owned(), 1.into()), ("b".to_owned(), 2.into())]);
+        assert_eq!(differences(&Figures::from([("a", 1)]), &committed), Ok(()));
+        let found = differences(&Figures::from([("a", 1), ("b", 3), ("c", 4)]), &committed);
+        assert_eq!(found, Err(vec!["b: measured 3, committed 2".into(), "c: measured 4, committed none".into()]));
+    }
+
+    #[test]
     fn the_readme_states_the_size_of_the_image() {
-        let figures: BTreeMap<String, Value> = serde_json::from_str(&read(COMMITTED).unwrap()).unwrap();
+        let figures = committed().unwrap();
         let kib = |name: &str| figures[name].as_u64().unwrap().div_ceil(1024);
         let (full, grating) = (kib("g474.flash_full"), kib("g474.flash_grating_only"));
         let expected = format!("{full} KiB of flash with everything, {grating} KiB with one grating");
