@@ -30,6 +30,7 @@
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 #![forbid(unsafe_code)]
 
+mod amount_reach;
 mod compile;
 mod compile_error;
 mod cover;
@@ -83,7 +84,8 @@ mod touched_layers;
 mod voltage;
 mod warning;
 
-pub use compile::{compile, compile_draft};
+pub use amount_reach::AmountReach;
+pub use compile::{compile, compile_draft, compile_draft_with_amounts};
 pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
 pub use file::Scene;

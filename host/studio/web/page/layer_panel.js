@@ -10,7 +10,8 @@ import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { LayerChoice, LayerNumber, Most } from "./layer_numbers.js" */
+/** @import { Scale } from "./felt.js" */
+/** @import { LayerChoice, LayerNumber } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
@@ -99,7 +100,7 @@ export class LayerPanel {
   /**
    * @param {EditedLayer} edited
    * @param {{ numbers: LayerNumber[], choices: LayerChoice[] }} tuned
-   * @param {Most} reach That the ends of the sliders are for.
+   * @param {Scale} reach
    * @param {boolean} isNew Whether another layer was selected before.
    */
   show(edited, { numbers, choices }, reach, isNew) {
@@ -108,7 +109,7 @@ export class LayerPanel {
     // While a layer is selected, its rows stay in their order.
     const fields = [...numbers, ...choices].map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
-    const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields, reach.naturalN, reach.reachN]);
+    const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
     const isOther = madeFor !== this.#madeFor;
     if (isOther) this.#make(edited, numbers, choices);
@@ -145,7 +146,7 @@ export class LayerPanel {
   /**
    * Says whether the layer is felt, as the last check of the scene found.
    * @param {Layer} layer
-   * @param {Most} reach
+   * @param {Scale} reach
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;
