@@ -116,7 +116,7 @@ test("what is said of layers is marked while the text has mistakes", async () =>
   assert.deepEqual(await marks(), ["none", "none"]);
 });
 
-test("the button of the sound says what it does, and stays as long as there is sound", async () => {
+test("the button of the sound says what it does, stays as long as there is sound, and leaves then", async () => {
   const page = await openStudio(undefined, { isFirstVisit: true });
   const hear = page.locator("#hear");
   await hear.click();
@@ -125,7 +125,7 @@ test("the button of the sound says what it does, and stays as long as there is s
   await page.getByRole("button", { name: "Feel", exact: true }).click();
   assert.ok(await hear.isVisible(), "after Edit");
   await hear.click();
-  await hear.locator("text=Hear it").waitFor();
+  await hear.waitFor({ state: "hidden" });
 });
 
 test("a scene that opens has none of the curves of the one before, and friction no numbers below zero", async () => {

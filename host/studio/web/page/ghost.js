@@ -151,8 +151,11 @@ export class Ghost {
     const { sound } = this.#parts;
     const hear = byId("hear");
     hear.onclick = () => attempt(() => (sound.isOn ? sound.stop() : sound.start()));
+    let isAnswered = false;
     sound.onChange = () => {
+      isAnswered ||= sound.isOn;
       hear.textContent = sound.isOn ? "♪ Turn sound off" : "♪ Hear it";
+      hear.hidden = isAnswered && !sound.isOn;
       this.#show();
     };
     sound.onChange();
