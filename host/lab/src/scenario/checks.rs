@@ -70,7 +70,7 @@ struct Check {
 struct Found {
     /// The first tick that is not as expected, with its DAC code, whether the amplifier was enabled, and the
     /// electrode's voltage.
-    wrong: Option<(u64, i16, bool, f64)>,
+    first_wrong: Option<(u64, i16, bool, f64)>,
     /// Ticks that were looked at.
     ticks: u64,
     last_driven_tick: Option<u64>,
@@ -134,11 +134,11 @@ impl Checks {
     }
 
     /// Each expectation that was not met, and each command that failed unexpectedly, by line.
-    pub(super) fn unmet(&self, told: &StateHistory, mut failures: Vec<Failure>) -> Vec<Unmet> {
+    pub(super) fn unmet(&self, states: &StateHistory, mut failures: Vec<Failure>) -> Vec<Unmet> {
         let Self { checks, clock, scale, file, .. } = self;
         let mut unmet = Vec::new();
         for (number, check) in checks.iter().enumerate() {
-            if let Some(sentence) = check.unmet(*clock, *scale, told, &mut failures) {
+            if let Some(sentence) = check.unmet(*clock, *scale, states, &mut failures) {
                 let line = check.expectation.line;
                 unmet.push(Unmet { file: file.clone(), line, expectation: Some(number), sentence });
             }
@@ -191,19 +191,19 @@ impl Check {
             Condition::State(_) | Condition::Fault(_) | Condition::Error(_) => false,
         };
         if is_wrong {
-            found.wrong.get_or_insert((tick.tick, code, enable, tick.felt.electrode_v));
+            found.first_wrong.get_or_insert((tick.tick, code, enable, tick.felt.electrode_v));
         }
     }
 
     /// The sentence, if the expectation was not met. Marks failures that were expected.
-    fn unmet(&self, clock: Clock, scale: Scale, told: &StateHistory, failures: &mut [Failure]) -> Option<String> {
+    fn unmet(&self, clock: Clock, scale: Scale, states: &StateHistory, failures: &mut [Failure]) -> Option<String> {
         let Some([start, end]) = self.span else {
             let after = self.expectation.after.as_deref().unwrap_or_default();
             return Some(format!("expected {}, and `{after}` never happened", self.expected()));
         };
         let span = format!("from {:.3} to {:.3} ms", clock.ms(start), clock.ms(end));
         let expected = format!("expected {} {span}", self.expected());
-        let Found { wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
+        let Found { first_wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
         let is_of_ticks =
             !matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
         if is_of_ticks && ticks == 0 {
@@ -221,12 +221,12 @@ impl Check {
                 }
             }
             Condition::State(state) => {
-                let found = told.by(end);
+                let found = states.by(end);
                 (found.map(|(_, found, _)| found) != Some(*state))
                     .then(|| format!("{expected}; {}", said(clock, found)))
             }
             Condition::Fault(fault) => {
-                let found = told.by(end);
+                let found = states.by(end);
                 (found.and_then(|(.., found)| found) != Some(*fault))
                     .then(|| format!("{expected}; {}", said(clock, found)))
             }
@@ -238,11 +238,11 @@ impl Check {
                 (met == 0).then(|| format!("{expected}; {}", failed(clock, failures)))
             }
             // A span of less than 10 ms has no tick that is wrong by itself.
-            Condition::OutputDriven if wrong.is_none() && last_driven_tick.is_none() => {
+            Condition::OutputDriven if first_wrong.is_none() && last_driven_tick.is_none() => {
                 Some(format!("{expected}; found DAC code 0 in each of its {ticks} ticks"))
             }
             Condition::OutputZero | Condition::OutputOff | Condition::OutputDriven | Condition::ElectrodeBelow(_) => {
-                let (tick, code, enable, electrode_v) = wrong?;
+                let (tick, code, enable, electrode_v) = first_wrong?;
                 let enabled = if enable { "enabled" } else { "disabled" };
                 let at = clock.ms(tick);
                 Some(format!(

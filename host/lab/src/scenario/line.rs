@@ -41,7 +41,7 @@ struct Inner<'r> {
     /// Whether nobody sends: the host was killed.
     is_dead: bool,
     checks: Checks,
-    told: StateHistory,
+    states: StateHistory,
     /// What happened, with its tick on the rig's clock.
     timeline: Vec<(u64, String)>,
     /// Why the rig has ended, with the line of the fault that it could not cause.
@@ -85,7 +85,7 @@ impl<'r> ScenarioLine<'r> {
             inbox: Vec::new(),
             is_dead: false,
             checks,
-            told: StateHistory::default(),
+            states: StateHistory::default(),
             timeline: Vec::new(),
             error: None,
         };
@@ -161,9 +161,9 @@ impl<'r> ScenarioLine<'r> {
             let file = line.map_or(scenario.file.clone(), |line| format!("{}:{line}", scenario.file));
             return Err(ScenarioError::Rig { file, source });
         }
-        let unmet = inner.checks.unmet(&inner.told, failures);
+        let unmet = inner.checks.unmet(&inner.states, failures);
         let mut timeline = std::mem::take(&mut inner.timeline);
-        timeline.extend(inner.told.entries());
+        timeline.extend(inner.states.entries());
         timeline.sort_by_key(|(tick, _)| *tick);
         let entry = |(tick, what)| TimelineEntry { t_ms: inner.checks.ms(tick), what };
         let timeline = timeline.into_iter().map(entry).collect();
@@ -217,7 +217,7 @@ impl Inner<'_> {
             self.keep(sent, None)?;
         }
         while let Some(bytes) = self.to_host.due(tick) {
-            self.told.hear(&bytes, tick);
+            self.states.hear(&bytes, tick);
             self.inbox.extend(bytes);
         }
         Ok(())

@@ -36,7 +36,7 @@ impl StateHistory {
 
     /// The last of what was said up to a tick, with its tick.
     pub(super) fn by(&self, tick: u64) -> Option<(u64, State, Option<Fault>)> {
-        self.history.iter().rev().find(|(told, ..)| *told <= tick).copied()
+        self.history.iter().rev().find(|(heard, ..)| *heard <= tick).copied()
     }
 
     /// What was said, for the timeline.
