@@ -110,7 +110,8 @@ pub(crate) fn state_word(state: State) -> &'static str {
     }
 }
 
-/// A telemetry message. The board reports the electric part of its target; `natural_n` is the rest.
+/// A telemetry message. A board does not know the scene's friction without its own limits, so `referenceN` is the
+/// friction that it commands: the reported electric part with `natural_n`.
 pub(crate) fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
     json!({
         "tick": telemetry.tick,

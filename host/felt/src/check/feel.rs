@@ -4,7 +4,7 @@ use frixel_scene::LayerTitle;
 
 use crate::judge::{
     AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, Over, Reason, SizeLimit, Step,
-    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, named, texture_range_n, weber_steps_text,
+    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, listed_briefly, texture_range_n, weber_steps_text,
 };
 
 /// Largest number of lines about elements; the others are summarised in one line. With the costs, the output fits 40
@@ -105,7 +105,7 @@ impl Group {
             if *copies == 0 { format!("{part}{layer}") } else { format!("{part}{layer} and {copies} alike") }
         };
         let members: Vec<String> = self.members.iter().map(member).collect();
-        (self.verdict.words(), format!("{}: {}", named(&members), self.text))
+        (self.verdict.words(), format!("{}: {}", listed_briefly(&members), self.text))
     }
 
     fn count(&self) -> usize {

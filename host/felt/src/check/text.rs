@@ -4,7 +4,7 @@ use frixel_model::InverseTable;
 
 use super::feel::Line;
 use super::{RamBytes, SceneCheck, feel};
-use crate::judge::named;
+use crate::judge::listed_briefly;
 use frixel_scene::{Origin, OutOfReach, TargetRange};
 
 impl SceneCheck {
@@ -65,7 +65,7 @@ impl SceneCheck {
 
     fn costs(&self) -> [Line; 5] {
         let Self { wire, ram, tick, .. } = self;
-        let layers = if tick.layers.is_empty() { String::new() } else { format!(": {}", named(&tick.layers)) };
+        let layers = if tick.layers.is_empty() { String::new() } else { format!(": {}", listed_briefly(&tick.layers)) };
         [
             ("layers", self.layers.to_string()),
             (
@@ -120,7 +120,7 @@ fn out_of_reach(targets: &TargetRange) -> Option<String> {
     let part = |outside: &OutOfReach, what: &str| {
         let OutOfReach { screen_percent, layers } = outside;
         let percent = if *screen_percent < 0.1 { "less than 0.1".to_owned() } else { format!("{screen_percent:.1}") };
-        (*screen_percent > 0.0).then(|| format!("{percent} % of the screen {what}, by {}", named(layers)))
+        (*screen_percent > 0.0).then(|| format!("{percent} % of the screen {what}, by {}", listed_briefly(layers)))
     };
     let parts = [part(&targets.above, "above"), part(&targets.below, "below natural")];
     let parts: Vec<String> = parts.into_iter().flatten().collect();

@@ -46,7 +46,7 @@ pub use layer_verdict::{Judgement, LayerVerdict};
 pub use measure::changes_along;
 use measure::{Measure, Measured};
 use moment::Moment;
-pub use named::{named, starts_off};
+pub use named::{listed_briefly, starts_off};
 pub use reason::{Reason, SizeLimit};
 pub(crate) use spectrum::component_power;
 pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};

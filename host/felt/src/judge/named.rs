@@ -6,7 +6,7 @@ use frixel_scene::{LayerTitle, Program, fold_copies};
 const NAMED_MAX: usize = 3;
 
 /// A list of at most three names, and how many more there are.
-pub fn named(names: &[String]) -> String {
+pub fn listed_briefly(names: &[String]) -> String {
     let list = names.get(..NAMED_MAX).unwrap_or(names).join(", ");
     match names.len().saturating_sub(NAMED_MAX) {
         0 => list,
@@ -21,6 +21,6 @@ pub fn starts_off(program: &Program) -> Option<String> {
     let number = titles.first()?.number();
     let (starts, it) =
         if titles.len() == 1 { ("starts", "it".to_owned()) } else { ("start", format!("layer {number}")) };
-    let layers = named(&fold_copies(&titles));
+    let layers = listed_briefly(&fold_copies(&titles));
     Some(format!("{layers} {starts} off: the line `trigger {number}` plays {it} (frixel play --control)"))
 }

@@ -1,6 +1,8 @@
 //! Parsers of numbers on the command line.
 
-use std::ops::{Bound, RangeBounds};
+use std::fmt::Display;
+use std::ops::{Bound, RangeBounds, RangeInclusive};
+use std::str::FromStr;
 
 /// Heading of the options that few people need, in the help of a command.
 pub(super) const RARE: &str = "Rare options";
@@ -24,7 +26,18 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 
 /// Parses the seed of random numbers.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+    whole(0..=u64::MAX)(text)
+}
+
+/// A parser of a whole number in a range.
+pub(super) fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
+where
+    N: FromStr + PartialOrd + Display + Clone,
+{
+    move |text| {
+        let expected = || format!("expected a whole number from {} to {}", range.start(), range.end());
+        text.parse().ok().filter(|number| range.contains(number)).ok_or_else(expected)
+    }
 }
 
 /// Parses a part of a whole, such as `2/8`.

@@ -6,14 +6,16 @@ use anyhow::{Result, anyhow};
 use clap::Args;
 use rayon::ThreadPoolBuilder;
 
+use super::argument::whole;
+
 /// Most threads that a command takes.
-const JOBS_MAX: i64 = 1024;
+const JOBS_MAX: u16 = 1024;
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct JobsArgs {
     /// Simulate so many plays side by side. Without it, as many as this machine has processors. Results are the same
     /// for any number.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=JOBS_MAX))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=JOBS_MAX))]
     jobs: Option<u16>,
 }
 

@@ -92,7 +92,7 @@ pub(super) struct PlayArgs {
         long,
         value_name = "N",
         default_value_t = 1000,
-        value_parser = clap::value_parser!(u32).range(1..=40_000),
+        value_parser = argument::whole(1..=40_000_u32),
         help_heading = RARE
     )]
     csv_hz: u32,

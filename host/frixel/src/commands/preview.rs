@@ -13,7 +13,7 @@ use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_play::{TO_THE_END, judge, judged_rig};
 use frixel_scene::compile_draft;
 
-use super::argument::number;
+use super::argument::{number, whole};
 use super::error::of_simulation;
 use super::profiles::ProfileArgs;
 use super::terminal::{note_refusals, print_line};
@@ -31,7 +31,7 @@ pub(super) struct PreviewArgs {
     #[arg(long, value_name = "MM_PER_S", default_value_t = 100.0, value_parser = speed, allow_negative_numbers = true)]
     speed_mm_per_s: f64,
     /// Largest width of the map, in pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(100..=4_000))]
+    #[arg(long, value_name = "PIXELS", default_value_t = 1_000, value_parser = whole(100..=4_000_u32))]
     map_width: u32,
 }
 

@@ -13,7 +13,7 @@ use frixel_lab::score::{Score, TrialPlan, TrialStroke};
 use frixel_play::TO_THE_END;
 use frixel_scene::compile;
 
-use super::argument::number;
+use super::argument::{number, whole};
 use super::jobs::JobsArgs;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke;
@@ -29,13 +29,13 @@ pub(super) struct ScoreArgs {
     #[arg(long, default_value = "human", value_name = "NAME|FILE")]
     stroke: String,
     /// Play under N people of an assumed population, each with strokes of their own, not under the scene's finger.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=1000_u64))]
     people: Option<u64>,
     /// Number of human strokes, of each person.
-    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = whole(1..=1000_u64))]
     strokes: u64,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.
-    #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=1000_u64))]
     seeds: u64,
     /// Length of a generated stroke.
     #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS, value_parser = super::argument::seconds, allow_negative_numbers = true)]

@@ -13,6 +13,7 @@ use frixel_lab::simulate::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, endless_sweep};
 use super::SimArgs;
 use super::interrupt::Interrupt;
 use super::profiles::screen;
+use super::stroke::note_off_screen;
 use super::terminal::{note, print_line};
 
 /// Rows per second in felt.csv.
@@ -25,6 +26,14 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
         None => endless_sweep(BUNDLED_SCREEN_M),
     };
     let stroke = stroke.map_err(of_generated_stroke)?;
+    if args.stroke.is_given() {
+        let screen = screen(args.screen.as_deref())?.1;
+        let screen_m = [screen.width_mm, screen.height_mm].map(|side_mm| 1e-3 * side_mm);
+        // The scene that will play may be made for a larger screen.
+        if let Err(error) = note_off_screen(&args.stroke.name(), &stroke, screen_m, stroke.duration_s()) {
+            note(format_args!("warning: {error}"));
+        }
+    }
     let finger = own_finger(args)?;
     let config = RigConfig::default().with(&WorldOptions { finger, ..args.touch.world(args.ideal)? });
     let mut memory = BoardMemory::new();

@@ -1,5 +1,6 @@
 //! The path of the simulated finger.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::error::{at, of_generated_stroke, reading};
@@ -12,9 +13,9 @@ use frixel_lab::simulate::{
     PlayOptions, PlayOptionsError, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, part_off_screen, side_mm,
 };
 use frixel_lab::stroke_file::StrokeFile;
-use frixel_scene::Shown;
+use frixel_scene::{Nearest, Shown};
 
-use super::argument::{RARE, above_zero_to, number};
+use super::argument::{RARE, above_zero_to, number, whole};
 use super::terminal::{note, note_interrupted, note_understood};
 
 /// Options that say where the simulated finger goes.
@@ -50,7 +51,7 @@ pub(super) struct StrokeArgs {
     #[arg(
         long,
         value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..=10_000),
+        value_parser = whole(1..=10_000_u32),
         requires = "from",
         help_heading = RARE
     )]
@@ -122,8 +123,17 @@ fn too_long(name: &str, seconds: f64) -> anyhow::Error {
     anyhow!("{name} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds")
 }
 
+/// Why a stroke cannot be read. One without the ending of a file may be a name with a typing mistake.
+fn unreadable(path: &Path, error: io::Error) -> anyhow::Error {
+    let name = path.to_str().filter(|_| path.extension().is_none() && error.kind() == io::ErrorKind::NotFound);
+    match name.and_then(|name| Nearest::new(name, GeneratedStroke::names()).suggestion) {
+        Some(name) => anyhow!("{} cannot be read ({error}): did you mean `{name}`?", path.display()),
+        None => reading(path)(error),
+    }
+}
+
 pub(super) fn from_file(path: &Path) -> Result<Stroke> {
-    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
+    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(|error| unreadable(path, error))?;
     note_interrupted(path, &bytes);
     let file = StrokeFile::read(bytes.as_slice()).map_err(at(path.display()))?;
     let StrokeFile { stroke, ignored_columns, understood } = file;

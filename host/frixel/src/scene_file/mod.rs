@@ -34,7 +34,7 @@ const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fr
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The scene file itself could not be read.
-    #[error("{file}: this scene file cannot be read ({source}): {}", check_path(Path::new(file), "check the path"))]
+    #[error("{file}: this scene file cannot be read ({source}): {}", scene_advice(file))]
     Unreadable {
         /// Path of the scene file, as the caller gave it.
         file: String,
@@ -76,6 +76,15 @@ impl SceneFileError {
             Self::Compile(error) => return error.to_json(),
         };
         serde_json::json!({ "file": file, "unreadable": reason, "mistakes": [], "has_more": false }).to_string()
+    }
+}
+
+/// Advice for a scene file that cannot be read: the file of that name in the gallery, if it is there.
+fn scene_advice(file: &str) -> String {
+    let names = [format!("{file}.toml"), format!("scenes/{file}"), format!("scenes/{file}.toml")];
+    match names.into_iter().find(|name| Path::new(name).is_file()) {
+        Some(name) => format!("did you mean {name}?"),
+        None => check_path(Path::new(file), "check the path").to_owned(),
     }
 }
 

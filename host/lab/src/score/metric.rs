@@ -22,7 +22,7 @@ pub(super) struct Metric {
     factor: f64,
     value: fn(&Fidelity) -> Option<f64>,
     human: fn() -> Option<Human>,
-    goal: Option<Limit>,
+    goal: Option<GoalBound>,
 }
 
 /// What a person notices.
@@ -38,14 +38,14 @@ pub struct Human {
 /// of at most 100 mm/s: a number of [`Goal::SLOW`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Limit {
+pub enum GoalBound {
     /// The number is to be at most so large.
     AtMost(f64),
     /// The number is to be at least so large.
     AtLeast(f64),
 }
 
-impl Limit {
+impl GoalBound {
     /// Whether a value is within the limit.
     pub fn is_met_by(self, value: f64) -> bool {
         match self {
@@ -72,7 +72,7 @@ pub struct MetricScore {
     /// What a person notices; absent where it is not known.
     pub human: Option<Human>,
     /// What a display is to reach; absent where there is no goal.
-    pub goal: Option<Limit>,
+    pub goal: Option<GoalBound>,
 }
 
 impl Metric {
@@ -134,11 +134,11 @@ pub(crate) fn metric_keys() -> impl Iterator<Item = &'static str> {
 
 pub(super) const METRICS: [Metric; 14] = [
     Metric {
-        goal: Some(Limit::AtMost(Goal::SLOW.error_max)),
+        goal: Some(GoalBound::AtMost(Goal::SLOW.error_max)),
         ..Metric::new("error", "error, 0 to 400 Hz", |fidelity| fidelity.error)
     },
     Metric {
-        goal: Some(Limit::AtLeast(Goal::SLOW.correlation_min)),
+        goal: Some(GoalBound::AtLeast(Goal::SLOW.correlation_min)),
         ..Metric::new("correlation", "correlation, 0 to 400 Hz", |fidelity| fidelity.correlation)
     },
     Metric::new("error_below_40_hz", "error below 40 Hz", |fidelity| fidelity.error_below_40_hz),
@@ -191,7 +191,7 @@ pub(super) const METRICS: [Metric; 14] = [
     },
     Metric {
         unit: "dB",
-        goal: Some(Limit::AtMost(Goal::SLOW.spurious_over_noise_max_db)),
+        goal: Some(GoalBound::AtMost(Goal::SLOW.spurious_over_noise_max_db)),
         ..Metric::new("spurious_over_noise_db", "worst third octave of it", |fidelity| fidelity.spurious_over_noise_db)
     },
 ];

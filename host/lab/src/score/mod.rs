@@ -22,7 +22,7 @@ use serde::Serialize;
 
 pub use layers::{LayerBorder, LayerScore, LevelScore, Verdicts};
 use metric::METRICS;
-pub use metric::{Human, Limit, MetricScore};
+pub use metric::{GoalBound, Human, MetricScore};
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use metric::{interval, metric_keys};
 pub use trials::{TrialPlan, TrialStroke, TrialsError};

@@ -1,6 +1,6 @@
 //! What a score says, in a sentence.
 
-use frixel_felt::judge::{Verdict, named};
+use frixel_felt::judge::{Verdict, listed_briefly};
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::{LayerScore, LevelScore, Score, Verdicts};
@@ -12,7 +12,7 @@ impl Score {
         let alike = told_apart(&levels.collect::<Vec<_>>(), self.simulated_fingers);
         let untouched: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
         let untouched = (!self.layers.is_empty() && !untouched.is_empty())
-            .then(|| format!("no stroke says anything about {}", named(&fold_copies(&untouched))));
+            .then(|| format!("no stroke says anything about {}", listed_briefly(&fold_copies(&untouched))));
         [Some(self.touched() + &self.noticed()), alike, untouched]
             .into_iter()
             .flatten()
@@ -71,7 +71,7 @@ fn ordered<'s>(layers: impl IntoIterator<Item = &'s LayerScore>) -> Vec<&'s Laye
 }
 
 fn titles(layers: &[&LayerScore]) -> String {
-    named(&fold_copies(&layers.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
+    listed_briefly(&fold_copies(&layers.iter().map(|layer| &layer.layer).collect::<Vec<&LayerTitle>>()))
 }
 
 /// Layers by the verdict of the only finger.
@@ -95,7 +95,7 @@ fn by_count(layers: &[&LayerScore], fingers: usize) -> String {
             copies.iter().zip(copies.iter().skip(1)).all(|(one, next)| one.simulated_fingers == next.simulated_fingers);
         format!("{} by {least}{}", titles(copies), if is_same { "" } else { " at least" })
     });
-    named(&parts.collect::<Vec<String>>())
+    listed_briefly(&parts.collect::<Vec<String>>())
 }
 
 /// How many fingers notice something, of those that touched it.
@@ -112,7 +112,7 @@ fn told_apart(levels: &[&LevelScore], fingers: usize) -> Option<String> {
     };
     let surely = if fingers == 1 { "not surely " } else { "" };
     let pairs: Vec<String> = levels.iter().map(pair).collect();
-    (!pairs.is_empty()).then(|| format!("{surely}told apart: {}", named(&pairs)))
+    (!pairs.is_empty()).then(|| format!("{surely}told apart: {}", listed_briefly(&pairs)))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use frixel_felt::judge::{FLAT_WEBER_STEPS, weber_steps_text};
 use frixel_scene::{LayerTitle, fold_copies};
 
 use super::metric::{METRICS, Metric};
-use super::{LayerBorder, LayerScore, LevelScore, Limit, MetricScore, Score, Verdicts};
+use super::{GoalBound, LayerBorder, LayerScore, LevelScore, MetricScore, Score, Verdicts};
 
 /// Most lines about layers: the whole summary fits a terminal of 40 lines.
 const LAYER_LINES_MAX: usize = 10;
@@ -130,8 +130,8 @@ fn value_text(metric: &MetricScore) -> String {
     let human = human.map_or(String::new(), |human| format!("; {:.1}: {}", human.value, human.meaning));
     let goal = goal.map_or(String::new(), |goal| {
         let (word, limit) = match goal {
-            Limit::AtMost(limit) => ("at most", limit),
-            Limit::AtLeast(limit) => ("at least", limit),
+            GoalBound::AtMost(limit) => ("at most", limit),
+            GoalBound::AtLeast(limit) => ("at least", limit),
         };
         format!("; goal: {word} {limit}, {}", if goal.is_met_by(*mean) { "met" } else { "missed" })
     });

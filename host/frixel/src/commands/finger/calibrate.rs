@@ -14,6 +14,7 @@ use frixel_lab::calibration::{align, read_board, write_csv};
 use frixel_lab::recording::{Metadata, calibration_fields};
 use frixel_wire::hello::Hello;
 
+use crate::commands::argument::{participant, whole};
 use crate::commands::error::cut_off;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::parquet;
@@ -34,7 +35,7 @@ pub(in crate::commands) struct CalibrateArgs {
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
-    #[arg(long, value_name = "CODE", value_parser = crate::commands::argument::participant)]
+    #[arg(long, value_name = "CODE", value_parser = participant)]
     participant: Option<String>,
     /// Replace an earlier recording.
     #[arg(long)]
@@ -51,7 +52,7 @@ pub(in crate::commands) struct CalibrateArgs {
     #[arg(long, value_name = "V_RMS", value_parser = plan::voltage)]
     voltage: Option<f64>,
     /// Number of strokes, 9 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
-    #[arg(long, value_name = "N", default_value_t = 36, value_parser = clap::value_parser!(u16).range(9..=360))]
+    #[arg(long, value_name = "N", default_value_t = 36, value_parser = whole(9..=360_u16))]
     strokes: u16,
     /// Simulated person: another one for each seed. Without it, the example finger.
     #[arg(long, value_name = "N")]
