@@ -96,7 +96,8 @@ pub(crate) fn write() -> Result<(), String> {
     fs::write(&path, replaced(&page, &generated(&committed()?)?)?).map_err(|error| format!("{PAGE}: {error}"))
 }
 
-/// Fails if a figure that was measured is not the committed one, on which the page's tables rest. The error lists them.
+/// Fails if a count that was measured is not the committed one, on which the page's tables rest. The error lists them.
+/// Bytes of images and stacks are left to their budgets: the folder of the build moves them by a few.
 pub(crate) fn check(measured: &Figures) -> Result<(), String> {
     differences(measured, &committed()?).map_err(|differences| {
         format!(
@@ -113,7 +114,8 @@ fn differences(measured: &Figures, committed: &BTreeMap<String, Value>) -> Resul
         let text = |figure: Option<u64>| figure.map_or("none".to_owned(), |figure| figure.to_string());
         (measured != committed).then(|| format!("{name}: measured {}, committed {}", text(measured), text(committed)))
     };
-    let found: Vec<String> = measured.names().filter_map(difference).collect();
+    let is_count = |name: &&str| ![".flash_", ".ram_", ".stack"].iter().any(|bytes| name.contains(bytes));
+    let found: Vec<String> = measured.names().filter(is_count).filter_map(difference).collect();
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
