@@ -1,7 +1,8 @@
-//! Intervals by bootstrap: independent values are drawn again and again, with replacement, and each draw is evaluated.
+//! Bootstrap intervals: independent values are drawn repeatedly with replacement, and each draw is evaluated.
 //!
-//! Of a recording, strokes are drawn: the noise of natural friction is correlated within a stroke, so rows are not
-//! independent, and intervals that take them to be are too narrow. Of a score, people are, or strokes of one finger.
+//! For a recording, whole strokes are drawn. The noise of natural friction is correlated within a stroke, so rows are
+//! not independent, and intervals that assume they are would be too narrow. For a score, people are drawn, or strokes
+//! of one finger.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -24,22 +25,22 @@ pub struct Estimate {
     pub high: f64,
 }
 
-/// Standard deviations up to which some hundreds of draws show an interval: of 499, three lie beyond on either side.
+/// Largest number of standard deviations that a few hundred draws resolve: of 499, three lie beyond on either side.
 const Z_SHOWN: f64 = 2.5;
-/// Standard deviations from which an interval is stretched further: draws of few values end soon beyond.
+/// Standard deviations from which an interval is extrapolated, because draws of few values end soon beyond.
 const Z_STRETCHED: f64 = 2.0;
 
-/// Least number of values of a group: of fewer, draws tell next to nothing.
+/// Minimum number of values in a group; draws from fewer are not informative.
 pub(crate) const GROUP_MIN: usize = 3;
 
-/// Values in groups, from each of which as many are drawn as it has.
+/// Values in groups. A draw takes as many values from each group as it has.
 pub(crate) struct Draws {
     groups: Vec<Vec<usize>>,
     random: Pcg64,
     expansion: Expansion,
 }
 
-/// By what intervals are wider than the spread of the draws.
+/// Kind of the draws, which determines how intervals are expanded.
 enum Expansion {
     /// The draws are of values: few of them vary less than they should.
     Values,
@@ -48,9 +49,11 @@ enum Expansion {
 }
 
 impl Draws {
-    /// Groups values by a key, so that each draw has as many of each as there are, as of strokes with the same highest
-    /// voltage. Fewer than three values of a key join the group below theirs, or else the one above. Where most keys
-    /// have so few, as where each stroke has a voltage of its own, all values are one group.
+    /// Groups values by a key, such as the highest voltage of a stroke.
+    ///
+    /// Each draw has as many values of each key as there are. Keys with fewer than three values join the group below
+    /// theirs, or else the one above. If most keys have so few, as when each stroke has a voltage of its own, all
+    /// values form one group.
     pub(crate) fn new<K: Ord>(keys: &[K], seed: u64) -> Self {
         let mut distinct: Vec<&K> = keys.iter().collect();
         distinct.sort_unstable();
@@ -73,7 +76,7 @@ impl Draws {
         Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Values }
     }
 
-    /// For values that were drawn from the distributions of their errors.
+    /// Creates draws of values from the distributions of their errors.
     pub(crate) fn of_errors() -> Self {
         Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors }
     }
@@ -98,9 +101,10 @@ impl Draws {
         (quantile(values, part), quantile(values, 1.0 - part))
     }
 
-    /// The same interval, but where one group has fewer than half of the values of another, what rests on it alone goes
-    /// beyond its values, and the interval is stretched about the median to there. It may leave the bounds of a bounded
-    /// quantity.
+    /// Like [`Self::interval`], but extrapolated if one group has fewer than half as many values as another.
+    ///
+    /// An estimate that depends on the small group alone can lie beyond its values. The interval is therefore stretched
+    /// about the median. It may leave the bounds of a bounded quantity.
     pub(crate) fn stretched_interval(&self, values: &mut [f64], z: f64) -> (f64, f64) {
         let expanded = self.expanded(z);
         if expanded <= Z_SHOWN || !self.is_uneven() {
@@ -117,11 +121,11 @@ impl Draws {
         sizes().min().zip(sizes().max()).is_some_and(|(smallest, largest)| 2 * smallest < largest)
     }
 
-    /// How many standard deviations of the draws make an interval as wide as that of the Gaussian quantile `z` for many
-    /// values: Student's quantile, and the variance that draws from few values lack.
+    /// Number of standard deviations of the draws that correspond to the Gaussian quantile `z` for many values.
     ///
-    /// The degrees of freedom are those of the smallest group: electric friction rests on the strokes of the highest
-    /// voltage, and an exponent on those of the voltage with the fewest.
+    /// Accounts for Student's quantile, and for the variance that draws from few values lack. The degrees of freedom
+    /// are those of the smallest group: electric friction depends on the strokes of the highest voltage, and an
+    /// exponent on those of the voltage with the fewest.
     pub(crate) fn expanded(&self, z: f64) -> f64 {
         match self.expansion {
             Expansion::Values => {}

@@ -1,9 +1,9 @@
-//! Strokes that are made, and not read from a file.
+//! Generated strokes.
 
 use frixel_hil_sim::{Stroke, StrokeError};
 use serde::{Deserialize, Serialize};
 
-/// How a stroke is made.
+/// Kind of a generated stroke.
 ///
 /// ```
 /// use frixel_lab::GeneratedStroke;
@@ -43,12 +43,12 @@ impl GeneratedStroke {
         Self::ALL.into_iter().map(Self::name)
     }
 
-    /// The one of a name.
+    /// The kind with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|stroke| stroke.name() == name)
     }
 
-    /// Whether it is another one for each seed, and has a median speed.
+    /// Whether the stroke depends on a seed, and has a median speed.
     pub const fn is_of_people(self) -> bool {
         matches!(self, Self::Human | Self::HumanRough)
     }

@@ -1,4 +1,4 @@
-//! What is read of a file, and how much at most, by whatever opens it: the command, the page and Python.
+//! Size limits of the files that the command, the page and Python read.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
@@ -49,34 +49,34 @@ pub(crate) fn check_header<'c>(cells: impl Iterator<Item = &'c [u8]>) -> Result<
     at_most("bytes in a cell of its header", longest, HEADER_CELL_MAX_BYTES)
 }
 
-/// Refuses more of something than is read.
+/// Refuses a number above a limit.
 pub(crate) fn at_most(what: &'static str, found: u64, max: u64) -> Result<(), InputError> {
     if found > max { Err(InputError::TooMany { what, found, max }) } else { Ok(()) }
 }
 
-/// Why something is not read.
+/// Why an input is not read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum InputError {
     /// The file has too many bytes.
     #[error("it has {found} bytes, and at most {max} are read")]
     TooLarge {
-        /// Its bytes.
+        /// Size of the file, bytes.
         found: u64,
         /// Most bytes that are read.
         max: u64,
     },
-    /// More bytes came than the file said that it has, or than are read of standard input.
+    /// More bytes arrived than the stated size of the file, or than the limit of standard input.
     #[error("it goes on after {max} bytes, the most that are read")]
     TooLong {
         /// Most bytes that are read.
         max: u64,
     },
-    /// It has more of something than is read.
+    /// The input has more of something, such as rows, than is read.
     #[error("it has {found} {what}, and at most {max} are read")]
     TooMany {
         /// What is counted.
         what: &'static str,
-        /// How many it has, or one more than are read.
+        /// Number of these in the input, or one more than the limit.
         found: u64,
         /// Most that are read.
         max: u64,
@@ -117,7 +117,7 @@ impl<R: Read> Bounded<R> {
         self.input
     }
 
-    /// A reader of a file that says that it has `found_bytes` bytes.
+    /// Creates a reader of a file with a stated size of `found_bytes` bytes.
     pub fn of_file(input: R, found_bytes: u64, max_bytes: u64) -> Result<Self, InputError> {
         if found_bytes > max_bytes {
             return Err(InputError::TooLarge { found: found_bytes, max: max_bytes });

@@ -4,14 +4,14 @@ use core::f64::consts::SQRT_2;
 
 use crate::bootstrap::Z_95;
 
-/// Median; not-a-number of no values.
+/// Median; not-a-number without values.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     quantile(&values, 0.5)
 }
 
-/// The quantile of sorted values, interpolated between neighbours; not-a-number of no values.
+/// Quantile of sorted values, interpolated between neighbours; not-a-number without values.
 pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
     let place = part.clamp(0.0, 1.0) * sorted.len().saturating_sub(1) as f64;
     let below = place.floor();
@@ -20,13 +20,13 @@ pub(crate) fn quantile(sorted: &[f64], part: f64) -> f64 {
     low + (place - below) * (high - low)
 }
 
-/// Mean; not-a-number of no values.
+/// Mean; not-a-number without values.
 pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count
 }
 
-/// 95 % interval of a share, of which `count` of `of` were counted (Wilson 1927, doi:10.1080/01621459.1927.10502953).
+/// 95 % interval of a share of `count` out of `of` (Wilson 1927, doi:10.1080/01621459.1927.10502953).
 pub(crate) fn share_interval(count: usize, of: usize) -> [f64; 2] {
     let (count, of, z) = (count as f64, of as f64, Z_95);
     let middle = (count + 0.5 * z * z) / (of + z * z);

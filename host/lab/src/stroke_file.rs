@@ -1,4 +1,4 @@
-//! Strokes as CSV text, as a person's finger or a program makes them.
+//! Strokes as CSV text, from a person's finger or a program.
 
 use std::io::Read;
 
@@ -25,19 +25,19 @@ const OF_A_PLAY: [&str; 10] = [
     "flags",
     "participant",
 ];
-/// First time above which times are those of another clock than the stroke's: uptime, or Unix time.
+/// Largest first time that is on the stroke's own clock, s. Larger ones are uptime or Unix time.
 const START_MAX_S: f64 = 10.0;
-/// A load above it is one in another unit.
+/// Largest plausible load, N. A larger one is in another unit.
 const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;
 
-/// Why a file is no stroke.
+/// Why a file is not a stroke.
 #[derive(Debug, Error)]
 pub enum StrokeFileError {
-    /// The file is no table of the columns that are needed, or a cell is no number.
+    /// A needed column is missing, or a cell is not a number.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The rows are no stroke of a finger.
+    /// The rows do not describe a stroke of a finger.
     #[error("{0}")]
     Refused(String),
     /// The finger cannot go through the places.
@@ -50,9 +50,9 @@ pub enum StrokeFileError {
 pub struct StrokeFile {
     /// The stroke.
     pub stroke: Stroke,
-    /// Names of columns that say nothing about a stroke, and that no play writes either.
+    /// Names of columns that are neither part of a stroke nor written by a play.
     pub ignored_columns: Vec<String>,
-    /// How the file was understood, as [`Table::understood`] says it.
+    /// Description of the detected format, as from [`Table::understood`].
     pub understood: Option<String>,
 }
 
@@ -61,10 +61,10 @@ impl StrokeFile {
     /// known, in N and above 0; an empty cell is an unknown load. The finger is off the screen in a row whose cells
     /// `x_mm` and `y_mm` are empty, as in `felt.csv`, or `nan`.
     ///
-    /// Time is from the start of the stroke and rises from row to row. Times that begin above 10 s are those of another
-    /// clock, and count from the first row. The finger touches at the first row and leaves
-    /// after the last. Between rows it goes straight and at constant speed (linear interpolation), so the rows should
-    /// be as close as the motion needs: every 10 ms or less for a hand.
+    /// Time is from the start of the stroke and rises from row to row. Times that begin above 10 s are on another
+    /// clock, and are counted from the first row. The finger touches down at the first row and lifts after the last.
+    /// Between rows it moves straight at constant speed (linear interpolation), so the rows should be as close as the
+    /// motion needs: every 10 ms or less for a hand.
     pub fn read(input: impl Read) -> Result<Self, StrokeFileError> {
         let mut table = Table::new(input)?;
         let places = [table.need(TIME)?, table.need(X)?, table.need(Y)?];
@@ -105,8 +105,8 @@ impl StrokeFile {
     }
 }
 
-/// The text of a file that [`StrokeFile::read`] reads to the bit: of each row the time in s, the place in mm, and the
-/// normal load in N; what is not known is not a number.
+/// Formats rows as CSV that [`StrokeFile::read`] reads back exactly: time in s, position in mm, and normal load in N.
+/// Unknown values are not-a-number.
 pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
     let mut text = String::from("t_s,x_mm,y_mm,force_n\n");
     for row in rows {

@@ -3,9 +3,9 @@
 //! A caller names the [`Column`]s that it needs, and gets the place of each; columns that it does not name are ignored.
 //! A header may state another unit than the caller's (`friction_mn`, `friction [mN]`); numbers are converted.
 //!
-//! Spreadsheets write tables in other ways than programs do: with semicolons or tabs between columns, with decimal
-//! commas, in UTF-16. What a file has is found from its first 64 KiB, and what can be read in two ways is refused.
-//! [`Table::understood`] says in a sentence what was found.
+//! Spreadsheets write tables differently from programs: with semicolons or tabs between columns, with decimal commas,
+//! in UTF-16. The format is detected from the first 64 KiB of a file; ambiguous input is refused. [`Table::understood`]
+//! describes the detected format in a sentence.
 //!
 //! A Parquet file of [`recording`](crate::recording) is a table, too, with its rows numbered as those of its CSV.
 //!
@@ -43,12 +43,12 @@ use unit::Named;
 pub use unit::Unit;
 use utf16::Utf8;
 
-/// Similarity from which one name is suggested for another, as a part of their length.
+/// Smallest similarity at which a name is suggested for another, as a fraction of their length.
 const LIKENESS: f64 = 0.6;
-/// What programs write into a cell whose value they do not know.
+/// Spellings of an unknown value.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
-/// Bytes from which it is found how a table is written; its header lies in them.
+/// Number of bytes from which the format is detected. They contain the header.
 const HEAD_BYTES: u64 = 64 << 10;
 
 /// A column that a caller reads.
@@ -56,7 +56,7 @@ const HEAD_BYTES: u64 = 64 << 10;
 pub struct Column {
     /// Its name in the header.
     pub name: &'static str,
-    /// What its cells have, for a message, such as `newtons`; empty for words and plain numbers.
+    /// Unit of its cells in messages, such as `newtons`; empty for words and plain numbers.
     pub unit: &'static str,
     /// The unit to which its numbers are converted if a header may state another.
     pub converted: Option<Unit>,
@@ -76,7 +76,7 @@ impl Column {
     }
 }
 
-/// Where a column stands in a table, and what its numbers are multiplied by.
+/// Position of a column in a table, and the factor of its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     index: usize,
@@ -90,12 +90,12 @@ impl Place {
     }
 }
 
-/// What was read of a table.
+/// The result of reading a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading<T> {
-    /// What it says.
+    /// The value that was read.
     pub value: T,
-    /// How it was understood, as [`Table::understood`] says it.
+    /// Description of the detected format, as from [`Table::understood`].
     pub understood: Option<String>,
 }
 
@@ -106,13 +106,13 @@ pub struct Table<R> {
     reader: Reader<Input<R>>,
     dialect: Dialect,
     names: Vec<String>,
-    /// What a row of units says of each name; empty without such a row.
+    /// The unit of each column, from a row of units; empty without such a row.
     units: Vec<String>,
-    /// Where header and units stand, if not in the first lines.
+    /// Positions of header and units, if not in the first lines.
     layout: Vec<String>,
-    /// Whether a caller has asked for the column of each name.
+    /// For each column, whether a caller has requested it.
     asked: Vec<bool>,
-    /// The columns whose header states a unit otherwise than by the name that the caller gave.
+    /// Columns whose header states the unit differently from the requested name.
     stated: Vec<String>,
     /// Rows that were read.
     rows: u64,
@@ -120,7 +120,7 @@ pub struct Table<R> {
 }
 
 impl<R: Read> Table<R> {
-    /// Reads down to the header. Fails if it cannot be told what separates the columns.
+    /// Reads up to the header. Fails if the separator of the columns cannot be determined.
     pub fn new(input: R) -> Result<Self, TableError> {
         let mut input = Utf8::new(input)?;
         let mut head = Vec::new();
@@ -159,8 +159,9 @@ impl<R: Read> Table<R> {
         self.dialect
     }
 
-    /// What was understood of the table beyond the documented names, commas between columns and points in numbers, in
-    /// one sentence; `None` if there is nothing. Asked for after the columns.
+    /// Describes in one sentence how the table deviates from documented names, comma separators and decimal points.
+    ///
+    /// `None` if it does not deviate. Call this after requesting the columns.
     pub fn understood(&self) -> Option<String> {
         let stated = self.stated.iter().map(String::as_str).collect::<Vec<_>>().join(" and ");
         let stated = (!stated.is_empty()).then(|| format!("read {stated}"));
@@ -178,7 +179,7 @@ impl<R: Read> Table<R> {
         Ok(self.reader.byte_headers()?)
     }
 
-    /// The names of the columns that no caller has asked for.
+    /// The names of the columns that no caller has requested.
     pub(crate) fn ignored(&self) -> Vec<String> {
         let unasked = self.names.iter().zip(&self.asked).filter(|(_, asked)| !**asked);
         unasked.map(|(name, _)| name.clone()).collect()
@@ -214,7 +215,7 @@ impl<R: Read> Table<R> {
         }
     }
 
-    /// The places of the columns that state the quantity in a unit of their own.
+    /// The places of the columns that state the quantity in another unit.
     fn find_converted(&mut self, name: &str, unit: Unit) -> Result<Vec<Place>, TableError> {
         let mut places = Vec::new();
         for (index, plain) in self.names.iter().enumerate() {
@@ -302,8 +303,8 @@ impl<R: Read> Table<R> {
     }
 }
 
-/// The beginning of a cell of the header. What is not UTF-8 is Latin-1, in which older programs write the `µ` of a
-/// unit.
+/// The beginning of a cell of the header. Bytes that are not UTF-8 are read as Latin-1, which older programs use for
+/// the `µ` of a unit.
 fn name(cell: &[u8]) -> String {
     let text = str::from_utf8(cell).map_or_else(|_| decode_latin1(cell), Cow::Borrowed);
     brief(text.trim()).into_owned()
@@ -319,7 +320,7 @@ pub struct Row<'t> {
 }
 
 impl<'t> Row<'t> {
-    /// Its line in the file; that of the header is 1 if nothing stands above it.
+    /// Its line in the file. The header is line 1 if nothing stands above it.
     pub fn number(&self) -> u64 {
         self.number
     }
@@ -392,13 +393,13 @@ impl<'t> Row<'t> {
         place.name_in(self.names).to_owned()
     }
 
-    /// The text of a cell; `None` if it says that its writer knew nothing.
+    /// The text of a cell; `None` if the value is unknown.
     pub fn known(&self, place: Place) -> Option<Cow<'t, str>> {
         let text = self.text(place);
         (!UNKNOWN.iter().any(|unknown| text.eq_ignore_ascii_case(unknown))).then_some(text)
     }
 
-    /// The number in a cell; `None` if the cell says that its writer knew nothing.
+    /// The number in a cell; `None` if the value is unknown.
     pub fn real_if_known(&self, place: Place) -> Result<Option<f64>, TableError> {
         self.known(place).map(|_| self.real(place)).transpose()
     }
@@ -413,7 +414,7 @@ pub(crate) fn not_a_number(row: u64, column: &str, found: &str) -> TableError {
     )
 }
 
-/// The whole rows of a file that its writer may still be writing: without a last line that has no line feed.
+/// The complete rows of a file that may still be growing, without an unterminated last line.
 pub fn whole_rows(bytes: &[u8]) -> &[u8] {
     bytes.get(..utf16::end_of_lines(bytes)).unwrap_or_default()
 }

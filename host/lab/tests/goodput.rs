@@ -1,4 +1,4 @@
-//! What a bad line leaves of an upload and of a stream: nothing that arrives damaged is accepted, and what cannot get
+//! Uploads and streams over a bad line: nothing that arrives damaged is accepted, and a transfer that cannot get
 //! through ends with a sentence. The test of three seconds holds the table of `docs/inside/scenarios.md`, and
 //! `FRIXEL_BLESS=1 cargo test -p frixel-lab --test main goodput` writes it; `cargo xtask soak faults` streams for
 //! longer.

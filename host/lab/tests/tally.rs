@@ -1,4 +1,4 @@
-//! What became of the fits of many people.
+//! Outcomes of the fits of many people.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What a layer that a person adds begins with: one list for the page's Add and New, and where a layer has room.
+//! Templates of layers that a person adds, for the page's Add and New, and where a layer has room.
 
 mod room;
 
@@ -19,7 +19,7 @@ const PICTURE: (&str, f64) = ("textures/wood.jpg", 1.5);
 /// The screen of New.
 const SCREEN_MM: [f64; 2] = [120.0, 80.0];
 
-/// A layer to begin with.
+/// A template of a layer.
 struct Addition {
     /// The word on its button, which is also the layer's name.
     name: &'static str,
@@ -249,7 +249,7 @@ fn quoted(text: &str) -> String {
     Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
-/// A text with a layer behind all others.
+/// Appends a layer to a text.
 fn with_layer(text: &str, name: &str, lines: &str) -> Result<String, TextError> {
     layer_text::add(text, &format!("name = {}\n{lines}", quoted(name)))
 }
@@ -299,7 +299,7 @@ struct Added {
     taken_mm: Vec<BoxMm>,
 }
 
-/// Which layer is added.
+/// The layer to add.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Wanted {

@@ -1,4 +1,4 @@
-//! What the page reads from the output buffer.
+//! Answers to the page, in the output buffer.
 
 use std::fmt::Display;
 
@@ -89,7 +89,7 @@ pub(crate) fn board(hello: &Hello) -> Value {
     json!({ "driving": driven_board(hello) })
 }
 
-/// What Arm drives, in words that stand on its button: with the board's notices, which a person reads before the press.
+/// The label of Arm: what it drives, with the board's notices, which a person reads before the press.
 fn driven_board(hello: &Hello) -> String {
     let board = hello.board;
     let sentence = if board.is_simulated() {
@@ -100,7 +100,7 @@ fn driven_board(hello: &Hello) -> String {
     hello.notice_sentences().fold(sentence, |sentence, notice| sentence + "; note: " + notice)
 }
 
-/// A state as the page knows it.
+/// The page's word for a state.
 pub(crate) fn state_word(state: State) -> &'static str {
     match state {
         State::Disarmed => "disarmed",

@@ -1,4 +1,4 @@
-//! What `frixel check` says of a scene.
+//! The results of `frixel check` for a scene.
 
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::{Advice, Judgement};

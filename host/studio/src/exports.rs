@@ -58,7 +58,7 @@ pub extern "C" fn output_len() -> usize {
     OUTPUT.with_borrow(Vec::len)
 }
 
-/// Writes the message of a panic to the output buffer from now on. The module then traps, and is of no more use.
+/// Writes the message of a panic to the output buffer from now on. The module then traps, and can no longer be used.
 #[unsafe(no_mangle)]
 pub extern "C" fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {

@@ -14,7 +14,7 @@ const SOUND_MIN_HZ: f64 = 10.0;
 /// Records what happens tick by tick, for the page.
 pub(crate) struct FeltSampler {
     recorder: Recorder,
-    /// What the recorder's rows do not have, for each row.
+    /// Values that the recorder's rows lack, for each row.
     touched: Vec<Touched>,
     tick_hz: f64,
     sound: Sound,
@@ -61,7 +61,7 @@ impl FeltSampler {
         Self { recorder, touched: Vec::new(), tick_hz: f64::from(tick_hz), sound: Sound::new(f64::from(tick_hz)) }
     }
 
-    /// What is told which scene plays.
+    /// The recorder, which is notified of the scene that plays.
     pub(crate) fn recorder_mut(&mut self) -> &mut Recorder {
         &mut self.recorder
     }

@@ -53,7 +53,7 @@ impl From<DeviceError> for HostError {
 }
 
 impl HostError {
-    /// Whether the board can no longer be talked to over this line: it is silent, gone or restarted.
+    /// Whether the board is unreachable over this line: silent, gone or restarted.
     pub(crate) fn is_link_lost(&self) -> bool {
         let Self::Play(PlayError::Device(error)) = self else { return false };
         matches!(

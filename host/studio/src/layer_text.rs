@@ -103,12 +103,12 @@ fn replaced(text: &str, Range { start, end }: Range<usize>, insert: &str) -> Str
     [text.get(..start).unwrap_or_default(), insert, text.get(end..).unwrap_or_default()].concat()
 }
 
-/// The offset of the begin of a line.
+/// Offset of the beginning of a line.
 fn line_start(text: &str, offset: usize) -> usize {
     text.get(..offset).and_then(|before| before.rfind('\n')).map_or(0, |newline| newline + 1)
 }
 
-/// The offset of the end of a line, before the character that ends it.
+/// Offset of the end of a line, before its terminator.
 fn line_end(text: &str, offset: usize) -> usize {
     text.get(offset..).and_then(|behind| behind.find('\n')).map_or(text.len(), |newline| offset + newline)
 }

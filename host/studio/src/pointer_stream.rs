@@ -21,15 +21,15 @@ pub(crate) struct PointerStream<'a> {
     /// What it felt.
     pub(crate) felt: FeltSampler,
     touch: TouchFollower,
-    /// Where the finger was to the board in the last tick.
+    /// Places of the finger as seen by the board in the last tick.
     touched: TouchedPlaces,
     /// The record of the last tick.
     last: Option<RigTick<Status>>,
-    /// Is called with every tick.
+    /// Callback for every tick.
     observer: Option<Observer>,
 }
 
-/// Is called with a tick.
+/// Callback for a tick.
 type Observer = Box<dyn FnMut(&RigTick<Status>)>;
 
 impl<'a> PointerStream<'a> {
@@ -76,7 +76,7 @@ impl<'a> PointerStream<'a> {
         (state, status.fault.map(|(fault, _)| fault).filter(|_| state == State::Faulted))
     }
 
-    /// Where the finger was to the board in the last tick.
+    /// Places of the finger as seen by the board in the last tick.
     #[cfg(test)]
     pub(crate) fn touched(&self) -> TouchedPlaces {
         self.touched

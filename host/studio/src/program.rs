@@ -1,4 +1,4 @@
-//! From a request to a compiled scene.
+//! Compilation of the scene of a request.
 
 use frixel_control::Board;
 use frixel_hil_sim::TouchConfig;
@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::request::{Request, RequestError};
 
-/// Why a request gives no program.
+/// Why a request cannot be compiled.
 #[derive(Debug, Error)]
 pub enum ProgramError {
     /// The request itself is wrong.
@@ -66,7 +66,7 @@ fn given<P: Profile>(given: &str) -> Result<P, CompileError> {
     P::bundled(given).map_or_else(|| P::parse(given, P::KIND), Ok)
 }
 
-/// What messages call it.
+/// Its name in messages.
 fn name_of<P: Profile>(given: &str) -> &str {
     if P::bundled(given).is_some() { given } else { P::KIND }
 }

@@ -64,7 +64,7 @@ impl Simulator {
     }
 
     /// Compiles a scene and plays it under the touch source of the request, as a draft if a board would refuse it. If
-    /// one of both cannot be read, the scene before plays on.
+    /// either cannot be read, the previous scene continues.
     pub(crate) fn play(&mut self, request: &Request) -> Result<(), HostError> {
         let (_, mut program) = drafted(request)?;
         program.header.prediction &= !request.without_prediction;
@@ -103,8 +103,8 @@ impl Simulator {
         stream.pointer.add(sample, now_tick);
     }
 
-    /// Lets `ticks` of virtual time pass. The host lives only while `is_alive`: without it, the board hears nothing,
-    /// and its own host timeout sets the output to zero. When the host lives again, a scene that is wanted plays on.
+    /// Runs `ticks` of virtual time. The host runs only while `is_alive`. Without it, the board receives nothing, and
+    /// its host timeout sets the output to zero. When the host runs again, a scene that is wanted continues.
     pub(crate) fn run(&mut self, ticks: u32, is_alive: bool) -> Result<(), PlayError> {
         if !is_alive {
             for _ in 0..ticks {

@@ -1,9 +1,8 @@
-//! Where the finger is to the board: the newest report of the touch source, and the place that the firmware predicts
+//! The finger as seen by the board: the newest report of the touch source, and the place that the firmware predicts
 //! from the reports.
 //!
-//! The page compares both with the finger's true place: so much later does friction come to the finger with
-//! prediction, and without. The prediction here is the firmware's own, on the same reports, so it is known also while
-//! the board plays without.
+//! The page compares both with the finger's true place, to show the lag of friction with and without prediction. The
+//! prediction here is the firmware's own, on the same reports, so it is also available while the board plays without.
 
 use frixel_control::{Board, Order, Track, is_past};
 use frixel_session::{Touch, Tracker};
@@ -19,7 +18,7 @@ pub(crate) struct TouchFollower {
 /// The finger's places at a tick, from the screen's top left corner, m; `None` without a finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct TouchedPlaces {
-    /// The place that the newest report says: what a board without prediction takes.
+    /// The place in the newest report, which a board without prediction uses.
     pub(crate) reported_m: Option<[f32; 2]>,
     /// The place that the firmware predicts.
     pub(crate) predicted_m: Option<[f32; 2]>,

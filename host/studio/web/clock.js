@@ -1,4 +1,4 @@
-// The page's clock: whoever needs the time, a later moment or the next picture of the screen asks here.
+// The page's clock: the time, timers and the next picture of the screen.
 //
 // A test gives the page another one, as `globalThis.studioClock`, and lets its time pass.
 // @ts-check

@@ -1,4 +1,4 @@
-// The studio's page: makes its parts and tells each what the others found out.
+// The studio's page: makes its parts and connects them.
 // @ts-check
 
 import { createEngine } from "./engine/engine.js";
@@ -162,7 +162,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
 }
 
 /**
- * Shows what became of each version of the scene: its mistakes, its map, and whether it plays.
+ * Shows the outcome of each version of the scene: its mistakes, its map, and whether it plays.
  * @param {Parts} parts
  * @param {OpenScene} scene
  */

@@ -1,15 +1,15 @@
-//! Puts the clock of the force sensor on the board's clock, and joins what both saw.
+//! Aligns the clock of the force sensor with the board's, and joins their data.
 
 use super::{CalibrationError, ForceRow};
 use crate::fit::Row;
 
-/// Both signals are compared at this rate, in Hz.
+/// Rate at which both signals are compared, in Hz.
 const GRID_HZ: f64 = 1000.0;
 /// Grid points that are averaged for the first, coarse search.
 const COARSE: usize = 5;
-/// Slower changes than this many grid points are no answer to the drive.
+/// Length of the baseline, in grid points. Slower changes are not a response to the drive.
 const BASELINE: usize = 100;
-/// The fine search goes this many grid points around the coarse result.
+/// Range of the fine search around the coarse result, in grid points.
 const FINE: i64 = 12;
 /// Least correlation of friction with the squared voltage.
 const CORRELATION_MIN: f64 = 0.1;
@@ -17,12 +17,12 @@ const CORRELATION_MIN: f64 = 0.1;
 const DRIFT_MAX_S: f64 = 1e-3;
 /// Slowest sensor, in Hz.
 const SENSOR_MIN_HZ: f64 = 200.0;
-/// A slower finger turns or rests, in mm/s.
+/// Speed below which a finger turns or rests, in mm/s.
 const STILL_MM_S: f64 = 5.0;
-/// Shorter strokes are left out, in seconds.
+/// Shortest stroke that is used, in seconds.
 const STROKE_MIN_S: f64 = 0.4;
 
-/// What the board reported at a time.
+/// A report of the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoardRow {
     /// Time on the board's clock, in seconds.

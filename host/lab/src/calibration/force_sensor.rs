@@ -28,12 +28,12 @@ impl ForceSensor {
         }
     }
 
-    /// What was measured, on the clock of the simulation.
+    /// The measured rows, on the clock of the simulation.
     pub fn rows(&self) -> &[ForceRow] {
         &self.rows
     }
 
-    /// Removes what was measured, and returns it.
+    /// Removes the measured rows, and returns them.
     pub fn take_rows(&mut self) -> Vec<ForceRow> {
         std::mem::take(&mut self.rows)
     }

@@ -1,5 +1,5 @@
 //! Records the data that [`fit`](crate::fit) needs: a board switches its drive on and off while a finger slides, and a
-//! force sensor watches.
+//! force sensor records.
 //!
 //! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes
 //! the recording. [`ForceSensor`] is the sensor under a simulated screen.
@@ -51,7 +51,7 @@ pub enum CalibrationError {
     Write(csv::Error),
 }
 
-/// A force above it is one in another unit.
+/// Largest plausible force, in newtons. A larger one is in another unit.
 const FORCE_MAX_N: f64 = 50.0;
 const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
 const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
@@ -106,7 +106,7 @@ struct Written<'r> {
     speed_mm_s: f64,
 }
 
-/// Writes what a board reported as CSV, which [`read_board`] reads: the column names, or rows behind them.
+/// Writes the board's reports as CSV, which [`read_board`] reads: the column names, or rows to append.
 pub fn write_board(mut output: impl Write, rows: Option<&[BoardRow]>) -> io::Result<()> {
     let mut text = String::new();
     if rows.is_none() {

@@ -1,4 +1,4 @@
-//! What is driven when.
+//! The drive of a calibration over time.
 
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ const MARKER_START_S: f64 = 0.3;
 const SAMPLE_HZ: u32 = 4_000;
 /// Places of the simulated finger a second.
 const PLACE_HZ: f64 = 250.0;
-/// The finger that the board computes voltages with. Any will do, because only the voltages count.
+/// Finger for which the board computes voltages. Any finger will do, because only the voltages count.
 const BOARD_FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
 const BOARD_GAP_M: f64 = 10e-6;
 const BOARD_LOAD_N: f64 = 0.5;

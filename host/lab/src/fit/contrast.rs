@@ -1,7 +1,7 @@
-//! From strokes to means: what the drive adds, compared with the friction just before and just after.
+//! Means of strokes: the friction added by the drive, compared with the friction just before and just after.
 //!
-//! Natural friction wanders: its noise grows towards low frequencies, and it follows the load. Comparing each time that
-//! the drive is on with the times off around it cancels what is slower than the envelope.
+//! Natural friction wanders: its noise grows towards low frequencies, and it follows the load. Comparing each phase
+//! with the drive on with the phases around it cancels everything slower than the envelope.
 
 use super::least_squares::{Measured, Observation};
 use super::recording::{Recording, Stroke};
@@ -10,14 +10,14 @@ use crate::statistics::{mean, median};
 
 /// Voltages within this factor of the lowest one of a level are one level.
 pub(super) const LEVEL_WIDTH: f64 = 1.05;
-/// Below this share of the highest voltage the drive is off.
+/// Fraction of the highest voltage below which the drive counts as off.
 const OFF_SHARE: f64 = 0.02;
-/// A change of this share of a stroke's highest voltage is none of noise.
+/// Smallest change of the voltage that is not noise, as a fraction of a stroke's highest voltage.
 const REST_SHARE: f64 = 0.2;
 /// Least number of rows that are left of a phase without its edges.
 const SETTLED_ROWS_MIN: usize = 2;
 
-/// Rows beside each switch of the drive that are left out: their friction is on its way from one voltage to the other.
+/// Rows next to each switch of the drive that are left out, because their friction is in transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edges {
     /// After a switch.
@@ -76,8 +76,8 @@ impl Levels {
         Some(self.levels.partition_point(|(_, high)| *high < voltage_v_rms))
     }
 
-    /// How long the voltage rests, on average, before it changes by a fifth of the highest one of its stroke, while the
-    /// drive is on: in rows, and in seconds if the rows have times.
+    /// Mean time for which the voltage rests while the drive is on, in rows, and in seconds if the rows have times. A
+    /// change counts from a fifth of the stroke's highest voltage.
     pub(super) fn rest(&self, recording: &Recording) -> (f64, Option<f64>) {
         let (mut rows, mut rests, mut duration_s) = (0.0, 0.0, Some(0.0));
         for stroke in &recording.strokes {
@@ -131,7 +131,7 @@ struct Segment {
 pub(super) struct Run<'r> {
     pub(super) level: Option<usize>,
     pub(super) rows: Vec<(usize, &'r Row)>,
-    /// When the voltage changes after the last row; `None` at the end of the stroke and without times.
+    /// Time at which the voltage changes after the last row; `None` at the end of the stroke and without times.
     change_s: Option<f64>,
 }
 
@@ -267,7 +267,7 @@ fn segment(level: Option<usize>, used: &[(usize, &Row)]) -> Segment {
     }
 }
 
-/// The mean of a quantity over segments, each counted by its rows.
+/// Mean of a quantity over segments, weighted by their numbers of rows.
 fn weighted<'s>(segments: impl Iterator<Item = (&'s Segment, f64)>) -> f64 {
     let (sum, rows) =
         segments.fold((0.0, 0.0), |(sum, rows), (segment, value)| (sum + segment.rows * value, rows + segment.rows));

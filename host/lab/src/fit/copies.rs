@@ -1,8 +1,8 @@
-//! Rows that stand in a recording twice, as of a file that was appended to itself: they would narrow the intervals.
+//! Rows that occur twice in a recording, as in a file that was appended to itself. They would narrow the intervals.
 
 use super::table::Row;
 
-/// Rows that return are a copy if they follow each other as improbably as eight rows that stand nowhere else.
+/// Threshold for a copy: the succession of its rows is as improbable as eight rows that occur nowhere else.
 const SUCCESSIONS: f64 = 7.0;
 
 /// The numbers of the first and the last row of consecutive rows that return later, whatever their time and stroke, and

@@ -1,5 +1,5 @@
-//! A law of the voltage that data give without a model, for fingers that the contact model does not describe: a power
-//! of the voltage, or else points.
+//! An empirical law of the voltage, for fingers that the contact model does not describe: a power of the voltage, or
+//! else points.
 
 use std::fmt::Write;
 
@@ -17,8 +17,8 @@ use super::{
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
 use crate::statistics::{mean, student_quantile};
 
-/// Difference from a power law that is allowed, as a part of electric friction: that of the contact model at the
-/// friction of the example finger.
+/// Largest deviation from a power law, as a fraction of electric friction: that of the contact model at the friction of
+/// the example finger.
 const LAW_SHARE: f64 = 0.05;
 
 /// A finger with a measured law of the voltage.
@@ -28,12 +28,13 @@ pub struct EmpiricalFit {
     pub friction_coefficient: Estimate,
     /// The law up to its highest point.
     pub law: VoltageLaw,
-    /// The highest voltage of the data, where the law ends, and what it adds to the friction.
+    /// The highest voltage of the data, where the law ends, and its electric friction.
     pub highest: MeasuredPoint,
     /// Normal load at which this holds, in newtons.
     pub normal_load_n: f64,
-    /// Root mean square error of electric friction in strokes that a fit has not seen, and its mean, in newtons; `None`
-    /// for means, and if a fit without one stroke does not converge.
+    /// Root mean square error of electric friction in held-out strokes, and its mean, in newtons.
+    ///
+    /// `None` for means, and if a fit without one stroke does not converge.
     pub held_out_n: Option<(f64, f64)>,
     /// Number of strokes, or of means.
     pub strokes: usize,
@@ -113,7 +114,7 @@ pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Re
 
 type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
 
-/// The power law of the data. Fails if their means at a voltage lie beside it.
+/// The power law of the data. Fails if their means at a voltage deviate from it.
 fn power_law(data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitError> {
     let voltage_v_rms = data.voltage_range_v_rms.1;
     let of = |solution: &Solution| {
@@ -147,8 +148,8 @@ fn points(data: &FittedData, strokes: &[StrokeResult], friction_coefficient: &Es
     Ok((VoltageLaw::Points { below, exponent }, highest, Some((held_out_error_n, mean(measured_n)))))
 }
 
-/// Fails if the means of the strokes at a voltage lie beside the law by more than their 99.9 % interval and 5 %.
-/// Returns how far those of the highest voltage lie beside it, in newtons; 0 if they are too few to tell.
+/// Fails if the means of the strokes at a voltage deviate from the law by more than their 99.9 % interval and 5 %.
+/// Returns the deviation at the highest voltage, in newtons; 0 if there are too few strokes.
 fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
     let mut beside_n = 0.0;
     for level in levels(strokes) {

@@ -1,5 +1,4 @@
-//! Why data are refused. Each rule writes its own sentence, of what was found and what to do about it; the variants are
-//! what a caller does otherwise.
+//! Why data are refused. Each rule writes its own message; the variants are the cases that callers handle differently.
 
 use thiserror::Error;
 
@@ -9,7 +8,7 @@ use crate::table::TableError;
 /// Why data cannot be fitted.
 #[derive(Debug, Error)]
 pub enum FitError {
-    /// The file is no table of the columns that are needed, or a cell is no number.
+    /// A needed column is missing, or a cell is not a number.
     #[error(transparent)]
     Table(#[from] TableError),
     /// Too few rows, strokes or means: in all, or at a voltage.

@@ -6,9 +6,9 @@ use frixel_scene::brief;
 
 use super::error::FitError;
 
-/// Faults that are described; of the others only the strokes are named.
+/// Largest number of faults that are described; further strokes are only named.
 const DESCRIBED: usize = 6;
-/// Part of the strokes that may be odd: they are left out.
+/// Largest fraction of the strokes that may be odd; they are left out.
 const LEFT_OUT_PART: f64 = 0.25;
 
 /// Why a stroke cannot be used.
@@ -35,7 +35,7 @@ pub enum Fault {
     },
     /// It did not slip.
     NoSlip {
-        /// How it shows.
+        /// The evidence.
         found: String,
     },
 }
@@ -45,7 +45,7 @@ pub enum Fault {
 pub struct FaultyStroke {
     /// Name of the stroke.
     pub stroke: String,
-    /// What is wrong with it.
+    /// The fault.
     pub fault: Fault,
 }
 
@@ -91,8 +91,8 @@ impl Faults {
         self.faulty.push(FaultyStroke { stroke: stroke.to_owned(), fault });
     }
 
-    /// Fails if a person has to look at the recording: where more than a few strokes are odd, or where friction itself
-    /// says that a finger stuck, since to leave those out would choose among results.
+    /// Fails if a person has to look at the recording: if more than a few strokes are odd, or if friction itself shows
+    /// that a finger stuck. Leaving those out would select among results.
     pub(super) fn check(&self) -> Result<(), FitError> {
         let has_stuck = self.faulty.iter().any(|faulty| matches!(faulty.fault, Fault::NoSlip { .. }));
         if has_stuck || self.faulty.len() as f64 > LEFT_OUT_PART * self.strokes as f64 { self.refuse() } else { Ok(()) }

@@ -1,4 +1,4 @@
-//! How well a fit predicts strokes that it has not seen.
+//! Prediction error of a fit in held-out strokes.
 
 use super::contrast::StrokeMeans;
 use super::least_squares::{Observation, Solution};

@@ -61,10 +61,10 @@ impl Fitted {
         Estimate { value, low: low.min(value), high: high.max(value) }
     }
 
-    /// What a voltage adds to friction under a load, in newtons.
+    /// Electric friction at a voltage under a load, in newtons.
     ///
-    /// The difference between what the contact model says and what the data say without it is a systematic error,
-    /// which no draw of strokes shows: the interval covers both.
+    /// The difference between the contact model and a law without it is a systematic error, which draws of strokes do
+    /// not show. The interval covers both.
     pub(super) fn electric_friction_n(&self, voltage_v_rms: f64, normal_load_n: f64) -> Result<Estimate, FitError> {
         let of = |solution: &Solution| {
             let attraction_n = solution.attraction.attraction_n(voltage_v_rms, normal_load_n)?;
@@ -76,7 +76,7 @@ impl Fitted {
     }
 }
 
-/// The interval of the friction coefficient, widened to what its slow wander leaves open.
+/// The interval of the friction coefficient, widened for its slow drift.
 ///
 /// Natural friction wanders for minutes, with a power that rises towards low frequencies, so that strokes beside each
 /// other are not independent. Sixths of the recording show how far it wanders: the interval is at least Student's for

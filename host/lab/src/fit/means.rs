@@ -52,7 +52,7 @@ pub struct MeanRow {
     pub friction_n: f64,
     /// Standard error of the mean, in newtons.
     pub standard_error_n: f64,
-    /// How many were averaged; `None` if only the standard error is known.
+    /// Number of averaged values; `None` if only the standard error is known.
     pub count: Option<f64>,
 }
 
@@ -175,7 +175,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
     })
 }
 
-/// Whether means can be fitted; returns the lowest and the highest voltage.
+/// Checks that means can be fitted. Returns the lowest and the highest voltage.
 fn check(rows: &[MeanRow]) -> Result<(f64, f64), FitError> {
     let found = rows.len();
     if found < MEANS_MIN {

@@ -20,7 +20,7 @@ const EXPONENT_BELOW: f64 = 2.0;
 pub struct MeasuredPoint {
     /// Voltage, in volts rms.
     pub voltage_v_rms: f64,
-    /// What that voltage adds to the friction, in newtons.
+    /// Electric friction at that voltage, in newtons.
     pub electric_friction_n: Estimate,
 }
 

@@ -7,10 +7,10 @@
 //!
 //! The steps, a module each: rows become strokes of steady sliding (`recording`), strokes become means that compare the
 //! drive on with the drive off around it (`contrast`), the law of the contact model (`law`) is fitted to the means by
-//! least squares (`search`, `least_squares`), its error is told from strokes that it has not seen (`held_out`),
-//! intervals come from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules`
-//! before the fit, `verdict` after it). A finger that contradicts the model has a law of its own instead (`empirical`):
-//! a power of the voltage, or else points (`measured_points`).
+//! least squares (`search`, `least_squares`), its error is measured in held-out strokes (`held_out`), intervals come
+//! from a bootstrap over strokes (`intervals`), and data that cannot be trusted are refused (`rules` before the fit,
+//! `verdict` after it). A finger that contradicts the model has a law of its own instead (`empirical`): a power of the
+//! voltage, or else points (`measured_points`).
 //!
 //! # What is estimated
 //!
@@ -18,8 +18,8 @@
 //!   recording.
 //! - **Electric friction**: what the stated voltage adds to the friction of this finger on this screen in full slip,
 //!   under the median load of the recording, at the mean friction coefficient of the recording. Losses between the
-//!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers what the
-//!   model says and what a power law without any model says.
+//!   stated voltage and the electrode (charge leakage, amplifier gain) are part of it. Its interval covers both the
+//!   estimate of the model and that of a power law without a model.
 
 mod contrast;
 mod copies;
@@ -96,9 +96,9 @@ pub struct Fit {
     pub stated_voltage_v_rms: f64,
     /// Normal load at which it is stated, in newtons.
     pub normal_load_n: f64,
-    /// What the stated voltage adds to the friction, in newtons.
+    /// Electric friction at the stated voltage, in newtons.
     pub electric_friction_n: Estimate,
-    /// What the highest voltage of the data adds to the friction, in newtons.
+    /// Electric friction at the highest voltage of the data, in newtons.
     pub electric_friction_most_n: Estimate,
     /// Exponent of the voltage, and what it says about the model.
     pub voltage_exponent: Exponent,
@@ -120,14 +120,15 @@ pub struct Fit {
     pub has_time: bool,
     /// Whether the data have speeds.
     pub has_speed: bool,
-    /// Bandwidth with which friction follows a switch of the drive, in Hz: that of the force sensor, and of the finger;
-    /// `None` if the data cannot tell.
+    /// Bandwidth with which friction follows a switch of the drive, in Hz.
+    ///
+    /// It is that of the force sensor, and of the finger; `None` if the data are inconclusive.
     pub bandwidth_hz: Option<f64>,
-    /// Errors in strokes that a fit has not seen; `None` for means, and if a fit without one stroke does not converge.
+    /// Errors in held-out strokes; `None` for means, and if a fit without one stroke does not converge.
     pub held_out: Option<HeldOut>,
     /// What was left out and corrected before the fit.
     pub preparation: Preparation,
-    /// What was measured in each stroke, and what the fit says.
+    /// Measured and fitted values of each stroke.
     pub strokes: Vec<StrokeResult>,
 }
 
@@ -142,7 +143,7 @@ pub struct StrokeResult {
     pub points: Vec<Point>,
 }
 
-/// What a voltage added to friction in a stroke.
+/// Electric friction at one voltage in a stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Voltage, in volts rms.

@@ -9,9 +9,9 @@ use super::{Division, FaultyStroke, SensorZero};
 pub struct Preparation {
     /// Odd strokes that were left out.
     pub left_out: Vec<FaultyStroke>,
-    /// The zero of the force sensor, as rows without contact tell it.
+    /// Zero of the force sensor, from rows without contact.
     pub sensor_zero: Option<SensorZero>,
-    /// Number of rows that were left out because their time is unknown, and that of others is known.
+    /// Number of rows that were left out because they have no time although others do.
     pub rows_without_time: usize,
 }
 
@@ -21,7 +21,7 @@ impl Preparation {
         self.left_out.iter().map(|faulty| &*faulty.stroke).collect()
     }
 
-    /// What the force sensor read without contact, normal force and friction, in newtons.
+    /// Reading of the force sensor without contact: normal force and friction, in newtons.
     pub fn sensor_zero_n(&self) -> Option<[f64; 2]> {
         self.sensor_zero.map(|zero| [zero.normal_force_n, zero.friction_n])
     }

@@ -9,11 +9,11 @@ use super::table::Row;
 use super::turns::{STILL_MM_S, pieces};
 use crate::statistics::median;
 
-/// What is dropped at the beginning of a stroke, in seconds: the finger starts to slide.
+/// Time dropped at the beginning of a stroke, in seconds: the finger starts to slide.
 const START_S: f64 = 0.15;
-/// What is dropped at the end of a stroke, in seconds: the finger turns.
+/// Time dropped at the end of a stroke, in seconds: the finger turns.
 const END_S: f64 = 0.05;
-/// Least duration of a stroke, in seconds, of which 0.2 s are left.
+/// Shortest stroke, in seconds: 0.2 s remain after both ends are dropped.
 const SHORTEST_S: f64 = START_S + 0.2 + END_S;
 /// Least number of rows that are left of a stroke.
 const KEPT_ROWS: usize = 5;
@@ -23,11 +23,11 @@ const SPEEDS_MM_S: core::ops::RangeInclusive<f64> = 20.0..=100.0;
 const GAP_INTERVALS: f64 = 10.0;
 /// See [`GAP_INTERVALS`], in seconds.
 const GAP_S: f64 = 0.05;
-/// Number of blocks of rows that stand in for strokes where nothing says where strokes begin.
+/// Number of blocks of rows that replace strokes where the data show no strokes.
 const BLOCKS: usize = 24;
 /// Least number of rows in such a block.
 const BLOCK_ROWS: usize = 5;
-/// Part of the rows whose time may be unknown where that of others is known: they are left out.
+/// Largest fraction of the rows without a time where others have one: they are left out.
 const TIMELESS_PART: f64 = 0.1;
 
 /// How the rows were divided into strokes.

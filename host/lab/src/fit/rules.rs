@@ -1,4 +1,4 @@
-//! Rules that data must keep before they are fitted.
+//! Rules that data must satisfy before they are fitted.
 
 use super::Settings;
 use super::contrast::{Levels, Phases, StrokeMeans};
@@ -16,31 +16,31 @@ const STROKES_MIN: usize = 8;
 const LOADS_N: core::ops::RangeInclusive<f64> = 0.03..=3.0;
 /// Friction coefficients of skin on glass: 0.1 to 3 are published, rising as the load falls (Dzidek 2017); with margin.
 const COEFFICIENTS: core::ops::RangeInclusive<f64> = 0.05..=5.0;
-/// How far the load of a stroke may be off the median, as a part of it: the rule of a published rig.
+/// Tolerance of a stroke's load around the median, as a fraction of it: the rule of a published rig.
 const LOAD_TOLERANCE: f64 = 0.15;
-/// Voltages above this part of the highest one are near it.
+/// Fraction of the highest voltage above which voltages are near it.
 const NEAR_TOP: f64 = 0.8;
 /// Least ratio of the highest to the lowest voltage from which an exponent can be told.
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
-/// A force above it, in newtons, is none of a finger on a touchscreen.
+/// Largest force of a finger on a touchscreen, in newtons.
 const FORCE_MAX_N: f64 = 50.0;
-/// Least mean time for which a voltage that was set rests: `frixel finger calibrate` switches every 20 to 30 ms, and
+/// Smallest mean time for which a voltage rests, in seconds: `frixel finger calibrate` switches every 20 to 30 ms, and
 /// the samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
 const REST_MIN_S: f64 = 8e-3;
 /// The same in rows, where there are no times.
 const REST_MIN_ROWS: f64 = 2.0;
-/// A voltage or load this far beyond the data is still taken as measured.
+/// Factor by which a voltage or load may exceed the data and still count as measured.
 const EXTRAPOLATION: f64 = 1.05;
-/// A stroke with less friction than this part of the median did not slip all the way.
+/// Fraction of the median friction below which a stroke did not slip all the way.
 const SLIP_SHARE: f64 = 0.5;
-/// A stroke with less electric friction than this part of the usual one at its voltage did not slip: the drive acts in
-/// full slip only (Sirin, arXiv 2104.01090).
+/// Fraction of the usual electric friction at its voltage below which a stroke did not slip: the drive acts in full
+/// slip only (Sirin, arXiv 2104.01090).
 const RESPONSE_SHARE: f64 = 0.25;
-/// A highest voltage below it, in volts rms, moves no finger by anything that can be measured: the example finger has
-/// 5 uN at 1 V.
+/// Minimum of the data's highest voltage, in volts rms. Below it, no effect can be measured: the example finger has 5
+/// uN at 1 V.
 const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 
-/// Whether there are rows, and their loads are newtons.
+/// Checks that there are rows, and that their loads are newtons.
 pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
     if rows.is_empty() {
         return Err(too_few_strokes(0));
@@ -48,7 +48,7 @@ pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
     check_load_unit(rows.iter().map(|row| row.normal_force_n))
 }
 
-/// Whether loads are newtons.
+/// Checks that loads are newtons.
 pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Result<(), FitError> {
     if loads_n.clone().all(|load_n| load_n.abs() < 1e-9) {
         return Err(FitError::Refused(
@@ -75,7 +75,7 @@ pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Res
     Ok(())
 }
 
-/// Whether there are enough strokes.
+/// Checks that there are enough strokes.
 pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
     let found = recording.strokes.len();
     if found < STROKES_MIN { Err(too_few_strokes(found)) } else { Ok(()) }
@@ -88,7 +88,7 @@ fn too_few_strokes(found: usize) -> FitError {
     ))
 }
 
-/// Whether an interval can rest on so many strokes of a voltage.
+/// Checks that there are enough strokes at a voltage for an interval.
 pub(super) fn check_at_voltage(found: usize, voltage_v_rms: f64) -> Result<(), FitError> {
     if found >= GROUP_MIN {
         return Ok(());
@@ -99,7 +99,7 @@ pub(super) fn check_at_voltage(found: usize, voltage_v_rms: f64) -> Result<(), F
     )))
 }
 
-/// Whether there are enough strokes near the highest voltage, on which electric friction rests.
+/// Checks that there are enough strokes near the highest voltage, on which electric friction depends.
 pub(super) fn check_top(strokes: &[StrokeMeans], voltage_v_rms: f64) -> Result<(), FitError> {
     let is_near =
         |stroke: &&StrokeMeans| stroke.observations.iter().any(|one| one.voltage_v_rms >= NEAR_TOP * voltage_v_rms);
@@ -128,7 +128,8 @@ pub(super) fn check_voltages(range_v_rms: Option<(f64, f64)>) -> Result<(f64, f6
     Ok((low, high))
 }
 
-/// Whether the voltages are those of an envelope, which rests at a level for some rows, and not of the carrier itself.
+/// Checks that the voltages are those of an envelope, not of the carrier itself. An envelope rests at a level for some
+/// rows.
 pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<(), FitError> {
     let (rest_rows, rest_s) = levels.rest(recording);
     let is_carrier = rest_s.map_or(rest_rows < REST_MIN_ROWS, |rest_s| rest_s < REST_MIN_S);
@@ -141,7 +142,7 @@ pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<()
     )))
 }
 
-/// Whether rows are close enough together to leave out those beside each switch of the drive.
+/// Checks that rows are close enough together to leave out those beside each switch of the drive.
 pub(super) fn check_phases(phases: &Phases) -> Result<(), FitError> {
     let Some(rows) = phases.unresolved_rows() else { return Ok(()) };
     Err(FitError::Refused(format!(
@@ -167,8 +168,8 @@ pub(super) fn check_loads(recording: &mut Recording, faults: &mut Faults) -> (f6
     (median_n, (loads().fold(f64::INFINITY, f64::min), loads().fold(0.0, f64::max)))
 }
 
-/// Whether natural friction is known and is that of skin; leaves out the strokes in which it was not that of a sliding
-/// finger.
+/// Checks that natural friction is known and is that of skin. Leaves out the strokes in which it was not that of a
+/// sliding finger.
 pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults) -> Result<(), FitError> {
     let ratio = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     if ratio.is_nan() {
@@ -200,7 +201,8 @@ pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults)
     Ok(())
 }
 
-/// Whether each force can be that of a finger. Asked after the medians, which show a wrong unit of a whole column.
+/// Checks that each force can be that of a finger. Called after the checks of medians, which show a wrong unit of a
+/// whole column.
 pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
     for row in recording.rows() {
         for (column, found_n) in [("normal_force_n", row.normal_force_n), ("friction_n", row.friction_n)] {
@@ -255,7 +257,7 @@ fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
     }
 }
 
-/// Whether friction is stated at a voltage that was measured.
+/// Checks that friction is stated at a voltage that was measured.
 pub(super) fn check_stated_voltage(settings: &Settings, voltages: (f64, f64)) -> Result<(), FitError> {
     let (stated, max) = (settings.voltage_v_rms, voltages.1);
     if stated <= EXTRAPOLATION * max {
@@ -267,7 +269,7 @@ pub(super) fn check_stated_voltage(settings: &Settings, voltages: (f64, f64)) ->
     )))
 }
 
-/// Whether friction is stated under a load that was measured.
+/// Checks that friction is stated under a load that was measured.
 pub(super) fn check_stated_load(settings: &Settings, loads: (f64, f64)) -> Result<(), FitError> {
     let (low, high) = loads;
     match settings.normal_load_n {

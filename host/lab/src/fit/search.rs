@@ -1,4 +1,4 @@
-//! Searches the laws that fit observations best.
+//! Search for the laws that fit the observations best.
 
 use frixel_play::GoesOn;
 
@@ -9,7 +9,7 @@ use super::least_squares::{Form, Measured, Observation, Solution, solve};
 use super::verdict;
 use crate::statistics::median;
 
-/// The laws fitted to the same observations: the contact model, and power laws that know no model.
+/// The laws fitted to the same observations: the contact model, and power laws without a model.
 pub(super) struct Replicate {
     pub(super) contact: Solution,
     pub(super) power: Solution,
@@ -62,7 +62,7 @@ impl Search<'_> {
     }
 }
 
-/// A finger to start the search from: the median friction coefficient, and the coupling that the highest voltages have.
+/// Start of the search: the median friction coefficient, and the coupling at the highest voltages.
 pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Result<Solution, FitError> {
     let friction_coefficient = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     let top_v_rms = observations.iter().map(|one| one.voltage_v_rms).fold(0.0, f64::max);
@@ -76,7 +76,7 @@ pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Re
     Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling) })
 }
 
-/// The error of a voltage that makes no friction; `found_n` is that at the highest one.
+/// The error for a voltage without electric friction; `found_n` is the electric friction at the highest voltage.
 pub(super) fn no_electric_friction(found_n: f64) -> FitError {
     FitError::Refused(format!(
         "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven, that \

@@ -1,7 +1,7 @@
-//! Whether friction had settled in the rows that are compared: whether the force sensor and all filters behind it are
-//! fast enough, and whether friction was smoothed afterwards.
+//! Checks that friction had settled in the compared rows: that the force sensor and its filters are fast enough, and
+//! that friction was not smoothed afterwards.
 //!
-//! A slow sensor has not arrived when the edge of a phase ends, and a filter that looks ahead, such as a centred mean,
+//! A slow sensor has not settled when the edge of a phase ends, and a filter that looks ahead, such as a centred mean,
 //! moves friction before its switch. Either mixes the friction of both voltages. Two things show it: the time that
 //! friction takes to rise, averaged over all switches; and electric friction that depends on how many rows beside a
 //! switch are left out.
@@ -26,35 +26,35 @@ const WIDER: [(Side, Edge); 5] = [
 /// Largest change of electric friction under wider edges that is allowed, as a part of it. A change within its 99.9 %
 /// interval is noise.
 const SETTLED_SHARE: f64 = 5e-3;
-/// Widest 99.9 % half-interval of such a change, as a part of electric friction, with which it tells something. A mean
-/// over whole periods of the drive leaves next to nothing of electric friction, and that depends on no edge.
+/// Largest 99.9 % half-interval of such a change that is conclusive, as a fraction of electric friction. A mean over
+/// whole periods of the drive removes nearly all electric friction, and the rest depends on no edge.
 const SETTLING_ERROR_MAX: f64 = 0.5;
 
-/// Means of a voltage over other rows differ by less than this part of it.
+/// Tolerance between means of one voltage over different rows, as a fraction of the voltage.
 const SAME_VOLTAGE: f64 = 0.01;
 
-/// What is looked at around a switch, in seconds: `frixel finger calibrate` switches after 20 to 30 ms.
+/// Time around a switch that is examined, in seconds: `frixel finger calibrate` switches after 20 to 30 ms.
 const BEFORE_S: f64 = 8e-3;
 const AFTER_S: f64 = 18e-3;
-/// Friction from this long before a switch to the switch, and from this long after it, may be on its way.
+/// Time before and after a switch in which friction may be in transition, in seconds.
 const EDGE_S: f64 = 3e-3;
 const SETTLED_S: f64 = 12e-3;
-/// Most intervals that are looked at: those of a megahertz. Shorter ones are no sensor's.
+/// Largest number of intervals, that of 1 MHz. No sensor is faster.
 const BINS_MAX: usize = 26_000;
-/// Fewer switches in either direction than this say nothing.
+/// Smallest number of switches in either direction for a result.
 const SWITCHES_MIN: usize = 50;
-/// Noise of the averaged friction, as a part of its step, with which a rise cannot be told.
+/// Noise of the averaged friction that hides a rise, as a fraction of its step.
 const NOISE_MAX: f64 = 0.04;
 /// Bandwidth times rise time from 10 to 90 %: 0.350 for one pole, 0.34 to 0.36 for the filters of force sensors.
 pub(super) const BANDWIDTH_TIMES_RISE: f64 = 0.35;
-/// Rise from 10 to 90 % of what is a mean over an interval, as a part of the interval.
+/// Rise time from 10 to 90 % of a mean over an interval, as a fraction of the interval.
 const RISE_OF_MEAN: f64 = 0.8;
-/// Slowest response that is fitted, in Hz. It is that of sensor, finger and clocks together: a sensor of one pole at
-/// 200 Hz is found as 171 Hz or more, and a Savitzky-Golay filter over 11 ms, which biases a fit by 1.4 %, as 131 Hz.
+/// Smallest accepted bandwidth, in Hz, of sensor, finger and clocks together. A sensor of one pole at 200 Hz is found
+/// as 171 Hz or more, and a Savitzky-Golay filter over 11 ms, which biases a fit by 1.4 %, as 131 Hz.
 const BANDWIDTH_MIN_HZ: f64 = 135.0;
 
-/// Bandwidth of the response to a switch of the drive, in Hz, that of the finger's friction included; `None` if the
-/// data cannot tell: without times, with few switches, or too noisy. Fails if it is too slow.
+/// Bandwidth of the response to a switch of the drive, in Hz, including the finger's friction. `None` if the data are
+/// inconclusive: without times, with few switches, or too noisy. Fails if it is too slow.
 pub(super) fn check_bandwidth(phases: &Phases) -> Result<Option<f64>, FitError> {
     let Some(rise_s) = rise_s(phases) else { return Ok(None) };
     let bandwidth_hz = BANDWIDTH_TIMES_RISE / rise_s;
@@ -107,8 +107,8 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<f64
     )))
 }
 
-/// Fails if the intervals of [`check_settled`] are too wide to show anything. This check comes behind that of the
-/// estimates' intervals, which the same noise widens, and whose sentence says more.
+/// Fails if the intervals of [`check_settled`] are too wide to show anything. This check follows that of the estimates'
+/// intervals, which the same noise widens, and whose message says more.
 pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
     if error <= SETTLING_ERROR_MAX {
         return Ok(());
@@ -135,7 +135,7 @@ struct Shift {
     error: f64,
 }
 
-/// What other edges change in electric friction, over strokes; `None` if too few strokes are left.
+/// Change of electric friction under wider edges, over strokes; `None` if too few strokes are left.
 fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
     let pairs: Vec<(f64, f64)> =
         used.iter().zip(wider).filter_map(|(used, wider)| weighted_attractions(used, wider)).collect();
@@ -157,7 +157,7 @@ fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
 }
 
 /// Attractions of a stroke under both edges, weighted by the squares of their voltages, as least squares does for a
-/// square law; `None` without any. A voltage that wider edges leave no rows of does not count.
+/// square law; `None` without any. A voltage without rows under the wider edges is ignored.
 fn weighted_attractions(used: &StrokeMeans, wider: &StrokeMeans) -> Option<(f64, f64)> {
     let mut sums = None;
     for (voltage_v_rms, attraction_n) in attractions(used) {

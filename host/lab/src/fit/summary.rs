@@ -17,7 +17,7 @@ pub struct Summary {
     pub friction_coefficient: f64,
     /// Its interval.
     pub friction_coefficient_interval: [f64; 2],
-    /// What 150 V rms adds to the friction under the stated load, N; `null` if friction is stated at another voltage.
+    /// Electric friction at 150 V rms under the stated load, N; `null` if friction is stated at another voltage.
     pub electric_friction_150_v_n: Option<f64>,
     /// Its interval.
     pub electric_friction_150_v_interval_n: Option<[f64; 2]>,
@@ -25,15 +25,15 @@ pub struct Summary {
     pub voltage_exponent: f64,
     /// Its interval.
     pub voltage_exponent_interval: [f64; 2],
-    /// The exponent that the model has for these data.
+    /// The model's exponent for these data.
     pub voltage_exponent_of_model: f64,
     /// `kept`, `doubted` or `none`: what the exponent of the voltage says about the model.
     pub voltage_verdict: &'static str,
-    /// Exponent of the load; `null` where the loads were too alike to tell.
+    /// Exponent of the load; `null` if the loads are too similar.
     pub load_exponent: Option<f64>,
     /// Its interval.
     pub load_exponent_interval: Option<[f64; 2]>,
-    /// The exponent that the model has for these data.
+    /// The model's exponent for these data.
     pub load_exponent_of_model: Option<f64>,
     /// `kept`, `doubted` or `none`: what the exponent of the load says about the model.
     pub load_verdict: &'static str,
@@ -41,7 +41,7 @@ pub struct Summary {
     pub stated_voltage_v_rms: f64,
     /// Load at which electric friction is stated, N.
     pub normal_load_n: f64,
-    /// What the stated voltage adds to the friction, N.
+    /// Electric friction at the stated voltage, N.
     pub electric_friction_n: f64,
     /// Its interval.
     pub electric_friction_interval_n: [f64; 2],
@@ -61,15 +61,16 @@ pub struct Summary {
     pub rows: usize,
     /// How rows were divided into strokes: `column`, `motion` or `blocks`; `means` if the rows are means.
     pub division: &'static str,
-    /// Bandwidth with which friction follows a switch of the drive, Hz: that of force sensor and finger together;
-    /// `null` where the data cannot tell.
+    /// Bandwidth with which friction follows a switch of the drive, Hz.
+    ///
+    /// It is that of force sensor and finger together; `null` if the data are inconclusive.
     pub bandwidth_hz: Option<f64>,
     /// Names of the odd strokes that were left out.
     pub strokes_left_out: Vec<String>,
     /// Normal force and friction that the force sensor read without contact, which were subtracted, N; `null` where no
     /// rows are without contact.
     pub sensor_zero_n: Option<[f64; 2]>,
-    /// Root mean square error of electric friction in strokes that a fit has not seen, N; `null` for means.
+    /// Root mean square error of electric friction in held-out strokes, N; `null` for means.
     pub held_out_error_n: Option<f64>,
 }
 

@@ -17,7 +17,7 @@ pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit:
 pub(super) const STROKE: Column = Column::new("stroke", "");
 pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
 
-/// A row of a recording. What its writer did not know is `None`.
+/// A row of a recording. Unknown values are `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Number of the row in its file; the header is row 1.

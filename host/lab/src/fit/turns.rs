@@ -3,7 +3,7 @@
 use super::table::Row;
 use crate::statistics::median;
 
-/// Friction of the other sign that is a turn and not noise, as a part of the median size of friction.
+/// Friction of the other sign that counts as a turn, not as noise, as a fraction of the median size of friction.
 const TURN_SHARE: f64 = 0.25;
 /// A finger slower than this, in mm/s, turns or stands still.
 pub(super) const STILL_MM_S: f64 = 5.0;

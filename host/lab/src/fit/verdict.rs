@@ -1,4 +1,4 @@
-//! What a fit says about the model, and rules that it must keep.
+//! The verdict of a fit on the model, and the rules for its estimates.
 
 use super::error::FitError;
 use super::intervals::Fitted;
@@ -9,34 +9,37 @@ use super::{Division, Fit, Settings, StrokeResult};
 use crate::bootstrap::{Estimate, Z_95, Z_999};
 use crate::statistics::mean;
 
-/// Highest voltage of the data below which its exponent says nothing about the model, in volts rms.
+/// Minimum of the data's highest voltage for a verdict on its exponent, in volts rms.
 const VERDICT_V_RMS: f64 = 100.0;
-/// How far the exponent of the voltage may lie above the model's before the model is in doubt: charge that leaks
-/// through the skin lets the voltage sag within a half-period of the carrier, which raises the exponent. Without noise,
-/// by 0.02 to 0.04 in most people of the simulator and by 0.07 in a moist finger. Nothing in the model lowers it.
+/// Tolerance of the voltage exponent above the model's.
+///
+/// Charge that leaks through the skin makes the voltage sag within a half-period of the carrier, which raises the
+/// exponent: without noise, by 0.02 to 0.04 in most people of the simulator and by 0.07 in a moist finger. Nothing in
+/// the model lowers it.
 const LEAKAGE: f64 = 0.07;
 /// Difference of exponents up to which a doubted model is still fitted: [`LEAKAGE`] and a margin.
 const ALLOWANCE: f64 = 0.1;
-/// Widest half-interval of the load's exponent with which it is judged.
+/// Largest half-interval of the load exponent for which it is judged.
 const LOAD_EXPONENT_WIDTH: f64 = 0.5;
-/// Least standard deviation of the loads of the strokes with which the load's exponent is judged, as a part of their
-/// mean: that of strokes at 94, 100 and 106 % of a load. A person who holds one load wanders by 2 to 4 %, and over so
-/// short a range one unlucky stroke decides.
+/// Smallest standard deviation of loads for a verdict on the load exponent, as a fraction of their mean.
+///
+/// It is that of strokes at 94, 100 and 106 % of a load. A person who holds one load varies by 2 to 4 %; over so short
+/// a range, one outlier decides.
 const LOAD_SPREAD_MIN: f64 = 0.05;
-/// Widest half-interval, as a part of friction with the drive off. A part of electric friction would refuse tables and
-/// recordings whose noise makes it small, and bias those that are left.
+/// Largest half-interval, as a fraction of friction with the drive off. As a fraction of electric friction, the limit
+/// would refuse data whose noise makes electric friction small, and so bias the rest.
 const INTERVAL_SHARE: f64 = 0.2;
 /// Largest change from the first to the last third, as a part of the mean.
 const DRIFT_SHARE: f64 = 0.15;
 /// Step of the logarithm of the coupling, for derivatives.
 const STEP: f64 = 0.01;
 
-/// What an exponent says about the model.
+/// Verdict of an exponent on the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The data cannot tell.
+    /// The data are inconclusive.
     None,
-    /// The exponent is the model's, within the 95 % interval and what leakage of charge adds to that of the voltage.
+    /// Consistent with the model, within the 95 % interval and, for the voltage, the effect of charge leakage.
     Kept,
     /// It lies outside, but within the 99.9 % interval and its allowance.
     Doubted,
@@ -47,13 +50,13 @@ pub enum Verdict {
 pub struct Exponent {
     /// Exponent of a power law that is fitted to the same data.
     pub measured: Estimate,
-    /// Exponent of a power law that is fitted to what the model says for these data.
+    /// Exponent of a power law that is fitted to the model's predictions for these data.
     pub model: f64,
-    /// What the difference says.
+    /// Verdict on the difference.
     pub verdict: Verdict,
 }
 
-/// Judges the model by exponents that it does not know.
+/// Judges the model by exponents that are measured without it.
 pub(super) struct Judge<'f> {
     pub(super) fitted: &'f Fitted,
     pub(super) observations: &'f [Observation],
@@ -109,8 +112,8 @@ impl Judge<'_> {
         variance.sqrt() >= LOAD_SPREAD_MIN * mean_n
     }
 
-    /// An exponent of the data, that of the model, and half the width of the 99.9 % interval of their difference. The
-    /// exponent may lie `above` the model's without a doubt.
+    /// An exponent of the data and of the model, and half the width of the 99.9 % interval of their difference. An
+    /// exponent up to `above` larger than the model's is not doubted.
     fn exponent(
         &self,
         form: Form,
@@ -119,7 +122,7 @@ impl Judge<'_> {
         of_solution: &dyn Fn(&Solution) -> Option<f64>,
     ) -> Option<(Exponent, f64)> {
         let value = of_replicate(&self.fitted.best)?;
-        // What the model says for these data, and how that depends on the coupling.
+        // The model's exponent for these data, as a function of the coupling.
         let modelled = |factor: f64| -> Option<f64> {
             let coupling = Coupling(coupling_of(&self.fitted.best.contact)? * factor);
             let solution = Solution { attraction: Attraction::Contact(coupling), ..self.fitted.best.contact };
@@ -180,7 +183,7 @@ fn refused(quantity: &'static str, (exponent, half_width): (Exponent, f64)) -> R
     )))
 }
 
-/// The observations as they would be if a law were exact.
+/// The observations that a law predicts.
 fn exact(observations: &[Observation], solution: &Solution) -> Option<Vec<Observation>> {
     let residuals = residuals_n(solution, 1.0, observations)?;
     let exact = observations.iter().zip(residuals).map(|(one, residual)| {

@@ -1,24 +1,24 @@
-//! The zero of the force sensor, as rows without contact tell it.
+//! The zero of the force sensor, from rows without contact.
 //!
-//! A sensor that nobody tared adds a constant to load and friction. While no finger touches the screen, it reads that
-//! constant and nothing else, so that averages over short times agree; those of a finger that rests do not.
+//! An untared sensor adds a constant to load and friction. While no finger touches the screen, it reads only that
+//! constant, so averages over short times agree. Under a resting finger they do not.
 
 use super::recording::usual_interval_s;
 use super::table::Row;
 use super::turns::STILL_MM_S;
 use crate::statistics::{mean, median, quantile};
 
-/// Duration of an average, in seconds, and what is left out where a finger may land or lift.
+/// Duration of an average, in seconds; also the margin left out where a finger may land or lift.
 const BLOCK_S: f64 = 0.05;
 /// Least time without contact, in seconds.
 const DURATION_MIN_S: f64 = 0.2;
-/// Parts of the loads below those that count as the lowest one and as that in contact: a finger also lifts.
+/// Quantiles of the loads that count as the lowest load and as the load in contact: a finger also lifts.
 const LOWEST_PART: f64 = 0.01;
 const CONTACT_PART: f64 = 0.9;
-/// Below this part of the load in contact no finger slides as in the rest of the recording.
+/// Fraction of the load in contact below which a finger does not slide as in the rest of the recording.
 const LIFTED_SHARE: f64 = 0.5;
-/// How far averages without contact may differ: by so many of their standard errors, the noise of the sensor, or by
-/// this part of the load in contact. The load of a finger that rests on the screen wanders by more.
+/// Tolerance between averages without contact: so many standard errors (the noise of the sensor), or this fraction of
+/// the load in contact. The load of a finger that rests on the screen varies by more.
 const AGREEMENT_ERRORS: f64 = 4.0;
 const AGREEMENT: f64 = 0.002;
 /// How far rows without contact may differ, likewise: each has the sensor's noise.
@@ -29,7 +29,7 @@ const AGREEING_PART: f64 = 0.8;
 /// Smallest load of a finger, in newtons; less is noise.
 const CONTACT_MIN_N: f64 = 0.03;
 
-/// What the force sensor read without contact.
+/// Reading of the force sensor without contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorZero {
     /// Normal force, in newtons.
@@ -40,8 +40,8 @@ pub struct SensorZero {
     pub duration_s: f64,
 }
 
-/// The rows in contact, as a tared sensor has them, and the zero that was taken from the others; all rows as they are
-/// and `None` if none are without contact for sure.
+/// Returns the rows in contact, minus the zero of the sensor, and this zero. Returns all rows unchanged and `None` if
+/// no rows are certainly without contact.
 pub(super) fn taken_from(rows: Vec<Row>) -> (Vec<Row>, Option<SensorZero>) {
     let Some((zero, least_n)) = zero(&rows) else { return (rows, None) };
     let in_contact = rows.into_iter().filter(|row| row.normal_force_n >= least_n);
@@ -53,7 +53,7 @@ pub(super) fn taken_from(rows: Vec<Row>) -> (Vec<Row>, Option<SensorZero>) {
     (tared.collect(), Some(zero))
 }
 
-/// The zero, and the reading of the normal force from which on a finger is in contact.
+/// The zero, and the reading of the normal force at which contact begins.
 fn zero(rows: &[Row]) -> Option<(SensorZero, f64)> {
     if rows.iter().any(|row| row.time_s.is_none()) {
         return None;

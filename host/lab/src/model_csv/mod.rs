@@ -64,11 +64,11 @@ pub struct Summary {
     /// Number of rows whose contact radius exceeds the finger's radius of curvature, where the paraboloid no longer
     /// approximates it.
     pub beyond_finger_rows: u64,
-    /// How the input was understood, as [`Table::understood`] says it.
+    /// Description of the input's format, as from [`Table::understood`].
     pub understood: Option<String>,
 }
 
-/// The doubt in contacts whose radius exceeds the finger's; `None` without any.
+/// Warning about contacts whose radius exceeds the finger's; `None` without any.
 pub fn wider_than_finger(contacts: u64) -> Option<String> {
     let voltages = match contacts {
         0 => return None,

@@ -1,5 +1,5 @@
-//! What a Parquet file claims: the counts and sizes in its footer and in the headers of its pages, checked before memory
-//! is taken for them.
+//! Checks of the counts and sizes in the footer and the page headers of a Parquet file. They are checked before memory
+//! is allocated for them.
 //!
 //! Both are structs of Thrift's compact protocol, with the numbers of `parquet.thrift`:
 //! <https://github.com/apache/parquet-format/blob/master/src/main/thrift/parquet.thrift>.
@@ -122,7 +122,7 @@ fn pages<'b>(bytes: &'b [u8], chunk: &ColumnChunkMetaData) -> Option<&'b [u8]> {
     bytes.get(start..start.checked_add(len)?)
 }
 
-/// What all pages have together.
+/// Totals over all pages.
 #[derive(Default)]
 struct Total {
     pages: u64,
@@ -139,7 +139,7 @@ impl Total {
         Ok(())
     }
 
-    /// Checks the first page, and goes on behind it. Returns its values; none of a dictionary.
+    /// Checks the first page, and advances past it. Returns its number of values; 0 for a dictionary.
     fn page(&mut self, pages: &mut &[u8]) -> Result<u64, RecordingError> {
         let (mut kind, mut unpacked, mut packed, mut values) = (None, 0, 0, 0);
         let mut header = Thrift::new(pages);

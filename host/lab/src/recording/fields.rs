@@ -12,7 +12,7 @@ pub struct Field {
     pub unit: String,
     /// What it is, for people.
     pub meaning: String,
-    /// What its values are.
+    /// Type of its values.
     pub kind: Kind,
 }
 
@@ -23,7 +23,7 @@ impl Field {
     }
 }
 
-/// What the values of a column are.
+/// Type of the values of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {

@@ -1,4 +1,4 @@
-//! What is known of a recording beside its columns.
+//! Metadata of a recording.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use sha2::{Digest, Sha256};
 
 use crate::hash::{hex, sha256};
 
-/// Bytes of all files of a recording that are kept as they are; of further ones, only the hash is.
+/// Total size of the files that are embedded in a recording, bytes; of further ones, only the hash is kept.
 pub(super) const EMBEDDED_MAX_BYTES: usize = 4 << 20;
 
-/// The commit, if whoever builds says it.
+/// The commit, if the build sets it.
 const REVISION: Option<&str> = option_env!("FRIXEL_REVISION");
 
-/// What made a recording, and what happened meanwhile.
+/// How a recording was made, and the events during it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metadata {
     /// Version of frixel that made the recording.
@@ -58,7 +58,7 @@ impl Metadata {
     /// The version that makes recordings, and that plays them again.
     pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
 
-    /// What every recording says of the program and of the board, as far as that is known.
+    /// Metadata of the program and of the board, as far as the board is known.
     pub fn new(rig: &str, board: Option<&Hello>, is_simulated: bool, participant: Option<&str>) -> Self {
         Self {
             frixel: Self::VERSION.to_owned(),
@@ -83,7 +83,7 @@ impl Metadata {
         self.later_scenes.push(LaterScene { t_s, scene, is_refused, files });
     }
 
-    /// Adds a file that has come while the play went on.
+    /// Adds a file that grew during the play.
     pub fn add_grown(&mut self, name: &str, file: GrowingFile) {
         let file = file.end(self.room_bytes());
         self.files.insert(name.to_owned(), file);
@@ -155,12 +155,12 @@ pub enum SourceFile {
 }
 
 impl SourceFile {
-    /// Files by their names, as long as all of them have few bytes enough; larger ones by their hash.
+    /// Files by their names, embedded as long as their total size is within the limit; further ones by their hash.
     pub fn all<'a>(files: impl IntoIterator<Item = (String, &'a [u8])>) -> BTreeMap<String, Self> {
         Self::within(EMBEDDED_MAX_BYTES, files)
     }
 
-    /// Files by their names, as long as all of them fit into so many bytes; larger ones by their hash.
+    /// Files by their names, embedded as long as they fit into `left` bytes together; further ones by their hash.
     fn within<'a>(mut left: usize, files: impl IntoIterator<Item = (String, &'a [u8])>) -> BTreeMap<String, Self> {
         let mut file = |bytes: &[u8]| match left.checked_sub(bytes.len()) {
             Some(rest) => {

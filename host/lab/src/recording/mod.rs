@@ -1,4 +1,4 @@
-//! Recordings: named columns with units, and what made them, as Parquet.
+//! Recordings as Parquet: named columns with units, and how they were made.
 //!
 //! A [`Recording`] is a value: [`Recording::of_rows`] makes one of the rows of a recorder, [`Recording::write_parquet`]
 //! and [`Recording::read_parquet`] are its way to bytes and back. [`ParquetWriter`] writes one while it grows. The same

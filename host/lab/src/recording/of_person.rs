@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use super::parquet_reader::{MAGIC, is_footer_of_person};
 
-/// Bytes of the beginning of a file that say what it is.
+/// Number of bytes at the beginning of a file that identify it.
 const HEAD: u64 = 4096;
 /// Largest footer of a Parquet file that is read.
 const FOOTER_MAX_BYTES: u32 = 64 << 20;

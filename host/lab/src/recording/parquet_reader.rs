@@ -27,8 +27,8 @@ const FOOTERS_MAX: u32 = 16;
 const TEXTS_MAX_BYTES: u64 = 256 << 20;
 
 impl Recording {
-    /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. Of a file whose writer was
-    /// killed, reads what is whole.
+    /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. If the writer of the file was
+    /// killed, reads the complete part.
     pub fn read_parquet(bytes: impl Into<Bytes>) -> Result<Self, RecordingError> {
         let bytes: Bytes = bytes.into();
         // The decoders of pages check what they read by assertions.

@@ -79,7 +79,7 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     /// Writes a row group: the values of each column, in the order of the fields, of equal numbers. Fails if the file
-    /// were too long to be read back; what was written so far is not.
+    /// would become too long to be read back; what was written so far can be read.
     pub fn write(&mut self, columns: &[Values]) -> Result<(), RecordingError> {
         let rows = columns.first().map_or(0, Values::len) as i64;
         check_length((self.rows + rows).unsigned_abs(), self.fields.len())?;

@@ -107,7 +107,7 @@ impl Recording {
     }
 }
 
-/// How the recording was made, or why it cannot be made again.
+/// The options of the play, or the reason why it cannot be played again.
 fn options(metadata: &Metadata) -> Result<PlayOptions, ReplayError> {
     let Metadata { frixel, rig, play, .. } = metadata;
     match rig.as_str() {

@@ -1,4 +1,4 @@
-//! What changed a recorded play while it went on, made again.
+//! The live changes of a recorded play, made again.
 
 use std::time::Duration;
 use std::vec;
@@ -8,7 +8,7 @@ use frixel_scene::Program;
 
 /// The changes of a play, in the order of their time.
 pub(super) struct ReplayedChanges {
-    /// What carries out the lines that are left; `None` for a play without `--control`.
+    /// The lines that are left, with their executor; `None` for a play without `--control`.
     control: Option<(Control, vec::IntoIter<String>)>,
     /// The scenes that were put on the board after the first.
     later: Vec<Program>,

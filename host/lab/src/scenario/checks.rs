@@ -10,14 +10,14 @@ use super::host::Failure;
 use super::state_history::StateHistory;
 use super::{Unmet, ticks_of};
 
-/// Longest time without a code other than zero of an output that is driven, s.
+/// Longest time for which the code of a driven output stays zero, s.
 const DRIVEN_WITHIN_S: f64 = 10e-3;
 
 /// All expectations.
 pub(super) struct Checks {
     checks: Vec<Check>,
     clock: Clock,
-    /// How long the scenario runs.
+    /// Duration of the scenario, in ticks.
     ticks: u64,
     scale: Scale,
     /// Name of the scenario's file.
@@ -44,7 +44,7 @@ impl Clock {
     }
 }
 
-/// What the board reaches with the scene, of which an expectation states fractions.
+/// Reach of the board with the scene, to which the fractions of expectations refer.
 #[derive(Clone, Copy)]
 struct Scale {
     reach: Reach,
@@ -65,13 +65,13 @@ struct Check {
     found: Found,
 }
 
-/// What was found of an expectation so far.
+/// Observations for an expectation so far.
 #[derive(Clone, Debug, Default)]
 struct Found {
     /// The first tick that is not as expected, with its DAC code, whether the amplifier was enabled, and the
     /// electrode's voltage.
     first_wrong: Option<(u64, i16, bool, f64)>,
-    /// Ticks that were looked at.
+    /// Number of compared ticks.
     ticks: u64,
     last_driven_tick: Option<u64>,
     friction_sum_n: f64,
@@ -103,7 +103,7 @@ impl Checks {
         self.clock.ms(tick)
     }
 
-    /// The command or the fault of this name has ended, or begun.
+    /// Records that the command of this name has ended, or that the fault of this name has begun.
     pub(super) fn begin(&mut self, name: Option<&str>, tick: u64) {
         if name.is_some() {
             self.begin_all(name, tick);
@@ -155,8 +155,8 @@ impl Checks {
 }
 
 impl Check {
-    /// Sets the span, without the time in which a rig that is late may still show what was before, or already what
-    /// comes. What is said may come later by that time.
+    /// Sets the span, without the time in which a late rig may still show the previous state or already the next one.
+    /// Reports may come later by that time.
     fn set_span(&mut self, [start, end]: [u64; 2], lateness_ticks: u64) {
         let is_said =
             matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
@@ -252,7 +252,7 @@ impl Check {
         }
     }
 
-    /// The sentence about a span without a tick. On a rig that is late, it is what is left of a longer one.
+    /// The sentence about a span without a tick. On a late rig, the span is the rest of a longer one.
     fn no_tick(&self, clock: Clock, [start, end]: [u64; 2]) -> String {
         let late = clock.lateness_ticks;
         let [start, end] = [start.saturating_sub(late), end + late];
@@ -293,14 +293,14 @@ impl Check {
     }
 }
 
-/// What the board has said last, for a sentence.
+/// The board's last report, for a sentence.
 fn said(clock: Clock, found: Option<(u64, State, Option<Fault>)>) -> String {
     let Some((tick, state, fault)) = found else { return "the board has said nothing".to_owned() };
     let fault = fault.map_or_else(String::new, |fault| format!(", {}", without_advice(&fault)));
     format!("the board has said \"{}{fault}\" at {:.3} ms", without_advice(&state), clock.ms(tick))
 }
 
-/// A state or a fault without what to do about it.
+/// A state or a fault without its advice.
 fn without_advice(said: &impl Display) -> String {
     let text = said.to_string();
     let is_fault = text.starts_with("fault ");

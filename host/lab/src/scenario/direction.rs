@@ -1,4 +1,4 @@
-//! One direction of the line: what a scenario's faults do to the bytes on it.
+//! One direction of the line, with the effects of a scenario's faults on its bytes.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! The host of a scenario: a player over the line, which does what the scenario says when it says so.
+//! The host of a scenario: a player over the line that carries out the commands of the scenario at their times.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ pub(super) struct Failure {
     /// Tick on the rig's clock.
     pub(super) tick: u64,
     pub(super) sentence: String,
-    /// An expectation has these words.
+    /// Whether an expectation has these words.
     pub(super) is_expected: bool,
 }
 
@@ -62,7 +62,7 @@ impl<'s, 'r> Host<'s, 'r> {
         Self { scenario, programs, line, player: None, failures: Vec::new(), last_line: 1 }
     }
 
-    /// Plays the scene, then does what the scenario says, to its end.
+    /// Plays the scene, then carries out the scenario to its end.
     pub(super) fn run(&mut self) {
         let tick_hz = self.line.board().tick_hz;
         match self.connect() {
@@ -84,7 +84,7 @@ impl<'s, 'r> Host<'s, 'r> {
         self.wait_until(ticks_of(1e3 * self.scenario.seconds, tick_hz));
     }
 
-    /// Does something, and writes its outcome into the timeline.
+    /// Performs an action, and records its outcome in the timeline.
     fn act(&mut self, action: &Action) {
         let verb = verb(action);
         self.line.note(verb);
@@ -105,7 +105,7 @@ impl<'s, 'r> Host<'s, 'r> {
         Ok(())
     }
 
-    /// Lets time pass, in which the program goes on if it is connected.
+    /// Waits. A connected program keeps running meanwhile.
     fn wait_until(&mut self, ticks: u64) {
         while self.line.ticks() < ticks && !self.line.has_ended() {
             let left = Duration::from_secs(ticks - self.line.ticks()) / self.line.board().tick_hz;
@@ -154,7 +154,7 @@ impl<'s, 'r> Host<'s, 'r> {
         Ok(())
     }
 
-    /// A program that cannot go on ends: it lets go of its connection.
+    /// Records a failure. A program that cannot continue closes its connection.
     fn failed(&mut self, what: &str, failure: CommandFailure) {
         let (sentence, goes_on) = match failure {
             CommandFailure::Play(error) => (error.to_string(), error.is_refusal()),
@@ -171,7 +171,7 @@ impl<'s, 'r> Host<'s, 'r> {
     }
 }
 
-/// What a connected host does.
+/// Performs an action of a connected host.
 fn perform_with(
     player: &mut ScenarioPlayer<'_>,
     action: &Action,

@@ -32,13 +32,13 @@ struct Inner<'r> {
     voltage_max_v_peak: f32,
     to_board: Direction,
     to_host: Direction,
-    /// Faults to come. Their ticks count from time zero.
+    /// Pending faults. Their ticks count from time zero.
     faults: VecDeque<PlannedFault>,
-    /// Faults of the line that are there.
+    /// Active faults of the line.
     present: Vec<PlannedFault>,
     /// Bytes that have arrived at the host and were not read.
     inbox: Vec<u8>,
-    /// Whether nobody sends: the host was killed.
+    /// Whether the host was killed and sends nothing.
     is_dead: bool,
     checks: Checks,
     states: StateHistory,
@@ -114,7 +114,7 @@ impl<'r> ScenarioLine<'r> {
         self.inner.borrow().error.is_some()
     }
 
-    /// Lets time pass up to this tick since time zero, in which nobody reads.
+    /// Advances to this tick since time zero, without reading.
     pub(super) fn pass_to(&self, ticks: u64) {
         let mut inner = self.inner.borrow_mut();
         let until = inner.first_tick.unwrap_or_default() + ticks;
@@ -129,7 +129,7 @@ impl<'r> ScenarioLine<'r> {
         inner.to_board.take(bytes, tick);
     }
 
-    /// Lets the person press the arm switch anew.
+    /// Presses the arm switch again.
     pub(super) fn press_switch(&self) {
         let mut inner = self.inner.borrow_mut();
         let until = inner.rig.press_switch() + inner.rig.tick();
@@ -137,24 +137,24 @@ impl<'r> ScenarioLine<'r> {
         let _ = inner.advance(until, false);
     }
 
-    /// The host is killed, or another one starts.
+    /// Kills the host, or starts another one.
     pub(super) fn set_dead(&self, is_dead: bool) {
         self.inner.borrow_mut().is_dead = is_dead;
     }
 
-    /// Writes into the timeline, now.
+    /// Adds an entry to the timeline, at the current tick.
     pub(super) fn note(&self, what: impl Into<String>) {
         self.inner.borrow_mut().note(what);
     }
 
-    /// A command has ended: expectations may count from now on.
+    /// Records the end of a command, from which expectations may count.
     pub(super) fn named_event(&self, name: Option<&str>) {
         let mut inner = self.inner.borrow_mut();
         let tick = inner.rig.tick();
         inner.checks.begin(name, tick);
     }
 
-    /// What the scenario has shown, with the failures of the host.
+    /// The results of the scenario, with the failures of the host.
     pub(super) fn outcome(self, scenario: &Scenario, failures: Vec<Failure>) -> Result<ScenarioOutcome, ScenarioError> {
         let mut inner = self.inner.borrow_mut();
         if let Some((line, source)) = inner.error.take() {
@@ -244,7 +244,7 @@ impl Inner<'_> {
         Ok(())
     }
 
-    /// Sets what the faults that are there do to the line.
+    /// Applies the active faults to the line.
     fn set_line(&mut self) {
         let mut damages = [Vec::new(), Vec::new()];
         for fault in &self.present {

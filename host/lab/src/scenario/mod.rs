@@ -1,4 +1,4 @@
-//! Runs a scenario on a rig: the host's commands and the faults at their times, and what has to be seen meanwhile.
+//! Runs a scenario on a rig: the host's commands and the faults at their times, and the expected observations.
 //!
 //! The host connects and plays the scenario's scene; time zero is the end of that play command.
 //!
@@ -27,14 +27,14 @@ use crate::simulate::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, endless_sweep, screen_m}
 use host::Host;
 use line::ScenarioLine;
 
-/// What a scenario has shown.
+/// Results of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioOutcome {
     /// What happened, in the order of time.
     pub timeline: Vec<TimelineEntry>,
     /// Number of expectations.
     pub expectations: usize,
-    /// What was not as expected, in the order of the file: expectations, and commands that failed.
+    /// Unmet expectations and failed commands, in the order of the file.
     pub unmet: Vec<Unmet>,
 }
 
@@ -74,7 +74,7 @@ pub enum ScenarioError {
     /// A scene cannot be compiled for the rig's board.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// The stroke is none.
+    /// The stroke is invalid.
     #[error("{file}: no finger can go along this stroke: {source}")]
     Stroke {
         /// The scenario's file.

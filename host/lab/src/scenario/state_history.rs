@@ -1,11 +1,11 @@
-//! What a board has said of its state to its host.
+//! The states that a board has reported to its host.
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::Decoder;
 use frixel_wire::message::FromBoard;
 use frixel_wire::payload::Payload;
 
-/// State and fault of a board, each time that it has said something else than before.
+/// State and fault of a board, at each change.
 #[derive(Default)]
 pub(super) struct StateHistory {
     decoder: Decoder,
@@ -34,12 +34,12 @@ impl StateHistory {
         self.history.last().and_then(|(.., fault)| *fault)
     }
 
-    /// The last of what was said up to a tick, with its tick.
+    /// The last report up to a tick, with its tick.
     pub(super) fn by(&self, tick: u64) -> Option<(u64, State, Option<Fault>)> {
         self.history.iter().rev().find(|(heard, ..)| *heard <= tick).copied()
     }
 
-    /// What was said, for the timeline.
+    /// All reports, for the timeline.
     pub(super) fn entries(&self) -> impl Iterator<Item = (u64, String)> {
         self.history.iter().map(|(tick, state, fault)| {
             let fault = fault.map_or_else(String::new, |fault| format!(" ({fault})"));

@@ -25,23 +25,25 @@ pub(super) struct Metric {
     goal: Option<GoalBound>,
 }
 
-/// What a person notices.
+/// A perception threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Human {
-    /// The value from which a person notices it, in the metric's unit.
+    /// The threshold from which a person notices it, in the metric's unit.
     pub value: f64,
     /// What it is, with its source.
     pub meaning: &'static str,
 }
 
-/// What a display is to reach, for features that are as large as its touch source needs and strokes with a median speed
-/// of at most 100 mm/s: a number of [`Goal::SLOW`].
+/// Goal for a display: a number of [`Goal::SLOW`].
+///
+/// It is for features that are as large as its touch source needs, and for strokes with a median speed of at most 100
+/// mm/s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GoalBound {
-    /// The number is to be at most so large.
+    /// The number must not be larger.
     AtMost(f64),
-    /// The number is to be at least so large.
+    /// The number must not be smaller.
     AtLeast(f64),
 }
 
@@ -69,9 +71,9 @@ pub struct MetricScore {
     /// 95 % interval of the mean over people, or strokes, like these, by bootstrap: it contains no value that none of
     /// them had. Absent with a single one.
     pub interval: Option<[f64; 2]>,
-    /// What a person notices; absent where it is not known.
+    /// Perception threshold; absent where it is unknown.
     pub human: Option<Human>,
-    /// What a display is to reach; absent where there is no goal.
+    /// Goal for a display; absent where there is none.
     pub goal: Option<GoalBound>,
 }
 

@@ -27,7 +27,7 @@ pub use metric::{GoalBound, Human, MetricScore};
 pub(crate) use metric::{interval, metric_keys};
 pub use trials::{TrialPlan, TrialStroke, TrialsError};
 
-/// Plays of which a thread's samples wait in memory: those of all plays together would not fit.
+/// Number of plays per thread whose samples are in memory; those of all plays would not fit.
 const PLAYS_PER_THREAD: usize = 4;
 
 /// One play to score.
@@ -74,7 +74,7 @@ pub struct TrialScore {
     pub person: Option<u64>,
     /// Name of the stroke.
     pub stroke: String,
-    /// Seed of all that was random.
+    /// Random seed of the play.
     pub seed: u64,
     /// How faithfully friction was felt; absent if the finger was down for less than a quarter of a second.
     pub fidelity: Option<Fidelity>,

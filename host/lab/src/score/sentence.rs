@@ -1,4 +1,4 @@
-//! What a score says, in a sentence.
+//! A score as a sentence.
 
 use frixel_felt::judge::{Verdict, listed_briefly};
 use frixel_scene::{LayerTitle, fold_copies};

@@ -4,13 +4,13 @@ use frixel_hil_sim::Stroke;
 
 use super::{PlayOptionsError, STROKE_MAX_S};
 
-/// Time between two places of a stroke that are looked at, s.
+/// Time between two checked places of a stroke, s.
 const LOOK_PERIOD_S: f64 = 1e-3;
-/// Most places of a stroke that are looked at.
+/// Largest number of checked places of a stroke.
 const LOOKS_MAX: f64 = 1e6;
 
-/// Ticks between two rows of a record, of which `rows_hz` are wanted a second. Refuses a rate that does not divide
-/// `tick_hz`, the board's ticks a second.
+/// Ticks between two rows of a record with `rows_hz` rows per second. Refuses a rate that does not divide `tick_hz`,
+/// the board's ticks per second.
 pub fn ticks_per_row(rows_hz: u32, tick_hz: u32) -> Result<u32, PlayOptionsError> {
     let divides = |rate: &u32| tick_hz.is_multiple_of(*rate);
     if rows_hz > 0 && divides(&rows_hz) {
@@ -32,8 +32,10 @@ pub fn check_duration(seconds: f64, tick_hz: u32) -> Result<(), PlayOptionsError
     }
 }
 
-/// The part of the time, from 0 to 1, for which the finger is beside a screen of this width and height, in m, in the
-/// first `seconds` of a stroke. Refuses a stroke that is beside it whenever the finger is down.
+/// Fraction of the time for which the finger is off the screen, from 0 to 1.
+///
+/// The time is the first `seconds` of a stroke; the screen has this width and height, in m. Refuses a stroke that is
+/// off the screen whenever the finger is down.
 pub fn part_off_screen(stroke: &Stroke, [width_m, height_m]: [f64; 2], seconds: f64) -> Result<f64, PlayOptionsError> {
     let end_s = seconds.min(stroke.duration_s());
     let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);

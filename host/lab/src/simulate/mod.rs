@@ -1,4 +1,4 @@
-//! From the options of a play to its board, world, stroke and finger: the one way for `play`, `replay` and Python.
+//! Board, world, stroke and finger from the options of a play, for `play`, `replay` and Python.
 //!
 //! A world without a play of its own, as in a score or a scenario, is made of [`WorldOptions`] alone.
 

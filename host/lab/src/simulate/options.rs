@@ -73,7 +73,7 @@ impl PlayOptions {
     pub const TOUCH: &'static str = "touch";
     /// Name of the samples that were streamed among them: two bytes each, little-endian.
     pub const STREAM: &'static str = "stream";
-    /// Stands among them before the name of a file that the scene names.
+    /// Prefix of the names of files that the scene names.
     pub const OF_SCENE: &'static str = "scene/";
 }
 

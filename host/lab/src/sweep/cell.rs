@@ -22,7 +22,7 @@ const KEY_DIGITS: usize = 32;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
-    /// Version of frixel: another one may feel otherwise.
+    /// Version of frixel. Results may differ between versions.
     pub version: String,
     /// Name of the scene.
     pub scene: String,
@@ -123,7 +123,7 @@ pub enum CellError {
 }
 
 impl Cell {
-    /// Name of the content: equal cells have equal keys, and others have others.
+    /// Key of the content: equal for equal cells, and different for different ones.
     pub fn key(&self) -> String {
         // Numbers, strings and maps with names always serialise.
         let content = serde_json::to_vec(self).unwrap_or_default();
@@ -132,7 +132,7 @@ impl Cell {
         digits
     }
 
-    /// What the cell is called in messages: its scene, and the values that the plan sets.
+    /// Name in messages: its scene, and the values that the plan sets.
     pub fn title(&self) -> String {
         let values: Vec<String> = self.parameters.iter().map(|(path, value)| format!("{path} = {value}")).collect();
         let with = if values.is_empty() { String::new() } else { format!(" with {}", values.join(", ")) };
@@ -162,7 +162,7 @@ impl Cell {
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 
-    /// Compiles the cell's scene, without playing it: what is wrong with one cell is wrong with those of all people.
+    /// Compiles the cell's scene, without playing it. A mistake in one cell is in those of all people.
     pub fn check(&self) -> Result<(), CellError> {
         self.compiled().map(drop)
     }

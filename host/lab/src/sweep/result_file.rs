@@ -6,12 +6,12 @@ use thiserror::Error;
 use super::{CellResult, json};
 use crate::hash::sha256;
 
-/// What stands before and behind the digits of the hash.
+/// Text before and after the digits of the hash.
 const HEAD: &str = "{\"sha256\":\"";
 const BEHIND: &str = "\",";
 const DIGITS: usize = 64;
 
-/// Why a text is no result of a cell.
+/// Why a text is not the result of a cell.
 #[derive(Debug, Error)]
 pub enum CellResultError {
     /// The text is not JSON of a result.

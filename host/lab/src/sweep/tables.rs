@@ -14,7 +14,7 @@ use crate::recording::{Column, Field, Kind, RecordingError, Values, table_parque
 use crate::score::{interval, metric_keys};
 use crate::statistics::mean;
 
-/// Why the results of a study cannot be written down.
+/// Why the results of a study cannot be written.
 #[derive(Debug, Error)]
 pub enum StudyError {
     /// The picture cannot be drawn.

@@ -1,4 +1,4 @@
-//! How a table is written: what separates its columns, and the decimal sign of its numbers.
+//! The format of a table: the separator of its columns, and the decimal sign of its numbers.
 
 use std::borrow::Cow;
 
@@ -6,9 +6,9 @@ use super::TableError;
 use super::layout::{BLANK, Layout};
 use super::utf16::ByteOrder;
 
-/// What may stand between columns, with its name.
+/// Separators of columns, with their names.
 const SEPARATORS: [(u8, &str); 4] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs"), (BLANK, "blanks")];
-/// How a spreadsheet is told the separator, in a line above the header.
+/// Prefix of a line above the header that states the separator to a spreadsheet.
 const TOLD: &[u8] = b"sep=";
 
 /// The decimal sign.
@@ -22,7 +22,7 @@ enum Decimal {
     Unseen,
 }
 
-/// How a table is written.
+/// The format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Dialect {
     separator: u8,
@@ -99,7 +99,7 @@ fn name(separator: u8) -> &'static str {
     SEPARATORS.iter().find(|(byte, _)| *byte == separator).map_or("", |(_, name)| name)
 }
 
-/// The separator that a first line such as `sep=;` tells. The line becomes a comment.
+/// The separator that a first line such as `sep=;` states. The line becomes a comment.
 fn told_separator(head: &mut [u8]) -> Option<u8> {
     let (separator, end) = (*head.get(TOLD.len())?, *head.get(TOLD.len() + 1)?);
     let is_told = head.get(..TOLD.len())?.eq_ignore_ascii_case(TOLD);
@@ -109,8 +109,9 @@ fn told_separator(head: &mut [u8]) -> Option<u8> {
     Some(separator.0)
 }
 
-/// The layout by the one separator that gives the header names of columns, and each row as many cells; by blanks if none
-/// gives names. Fails if there are more.
+/// The layout of the only separator for which the header has names of columns, and each row as many cells.
+///
+/// Blanks separate the columns if no separator gives names. Fails if there are several.
 fn layout(head: &[u8], is_whole: bool) -> Result<Layout, TableError> {
     let of = |separator: u8| Layout::of(head, separator, is_whole);
     let layouts = SEPARATORS.iter().filter(|(separator, _)| *separator != BLANK).map(|(separator, _)| of(*separator));
@@ -155,7 +156,7 @@ fn decimal(layout: &Layout) -> Decimal {
     }
 }
 
-/// What the comma of a number says.
+/// Meaning of the comma in a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Comma {
     /// It is a decimal comma.

@@ -90,7 +90,7 @@ impl Scale {
     }
 }
 
-/// What a header says about a column that a caller asks for.
+/// How a header relates to a requested column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Named {
     /// It is another column.

@@ -9,7 +9,7 @@ const GRID_MM: f64 = 0.5;
 const GAP_MM: f64 = 2.0;
 /// Places that are tried for a layer along each side of the screen.
 const PLACES: usize = 24;
-/// A covered square millimetre counts for so many ways from the middle to the border.
+/// Cost of a covered square millimetre, in distances from the middle to the border.
 const COVERED: f64 = 1000.0;
 
 /// A box of a size that covers as little as can be of what is there, as near to the middle as can be.

@@ -5,7 +5,7 @@
 /** Bytes that wait to be read at most, for example while the page is hidden; the oldest are dropped first. */
 const ARRIVED_MAX_BYTES = 1_000_000;
 
-/** Wakes those that wait for something to have changed. */
+/** Wakes waiters when something has changed. */
 class Signal {
   /** @type {Set<() => void>} */
   #waiting = new Set();

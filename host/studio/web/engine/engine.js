@@ -92,7 +92,7 @@ export class Engine {
     this.#checker = new WorkerClient("checker", (message) => this.onFailure(message));
   }
 
-  /** What `onState` was told last; at the start, the simulator. */
+  /** The state last passed to `onState`; at the start, the simulator. */
   get state() {
     return { link: this.#link, ...this.#state };
   }

@@ -164,7 +164,7 @@ class RemoteBoard {
 
   async #keepAlive() {
     if (this.#stream.hasDropped) {
-      // Nobody knows what the board has reported: it is disarmed, and its state is known again.
+      // The board's reports are incomplete: it is disarmed, so that its state is known again.
       this.#stream.hasDropped = false;
       await this.#disarm();
     }
@@ -252,7 +252,7 @@ class RemoteBoard {
   }
 
   /**
-   * The line, or the instance of the module, is of no more use: disconnects, and tells the page.
+   * The line, or the instance of the module, can no longer be used: disconnects, and notifies the page.
    * @param {Error} error
    */
   #lose(error) {

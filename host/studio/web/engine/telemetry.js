@@ -6,7 +6,7 @@
 /** @typedef {Record<Told | "tick", number> & { isTouched: boolean }} Telemetry */
 
 /**
- * Telemetry as a frame of samples. What the finger feels and where it is, a board cannot know.
+ * Telemetry as a frame of samples. The felt friction and the true place of the finger are unknown to a board.
  * @param {Telemetry[]} telemetry
  * @returns {T.WorkerFrame}
  */

@@ -139,7 +139,7 @@ export type State = {
 export type PointerSample = { epochMs: number; xMm: number; yMm: number; down: boolean; loadN?: number };
 
 type Nothing = Record<string, never>;
-/** What an instance of the module says to a control line: what is clamped now, or null. */
+/** Answer of an instance of the module to a control line: what is clamped now, or null. */
 export type Notice = { notice: string | null };
 
 /** The questions to the workers, by type: what is asked with them, and the answer. */
@@ -185,7 +185,7 @@ export type Answer = {
 };
 export type Failure = { type: "failure"; error: string };
 export type FrameMessage = { type: "frame"; frame: WorkerFrame };
-/** What the workers tell unasked. */
+/** Unsolicited messages of the workers. */
 export type FromBoard =
   | Failure
   | (FrameMessage & { sound: Float32Array; soundTick: number })
@@ -196,7 +196,7 @@ export type FromHost =
   | FrameMessage
   | ({ type: "state"; needsArm: boolean; driving: string } & Reported)
   | { type: "lost"; error: string };
-/** The worker of the compiler tells nothing but its failure. */
+/** The only unsolicited message of the compiler's worker: its failure. */
 export type FromChecker = Failure;
 export type FromWorker = FromBoard | FromHost;
 

@@ -10,7 +10,7 @@ const LIFE_MS = 25;
 
 /**
  * A request was refused; `problems` has the places in the scene's text, if there are any. With `isLinkLost`, the board
- * can no longer be talked to over this line.
+ * is unreachable over this line.
  */
 class EngineError extends Error {
   /** @param {{ error: string, problems?: T.Problem[], isLinkLost?: boolean }} answer */
@@ -122,8 +122,8 @@ class Engine {
   }
 
   /**
-   * The error of a trap: the module has written the message of a panic, if it was one. The instance is of no more use,
-   * and neither is its board.
+   * The error of a trap: the module has written the message of a panic, if it was one. The instance and its board can
+   * no longer be used.
    * @param {unknown} trap
    */
   #failure(trap) {

@@ -169,7 +169,7 @@ async function chosenPort() {
     return await navigator.serial.requestPort();
   } catch (error) {
     const { name } = /** @type {DOMException} */ (error);
-    // The browser's dialog was closed, and said itself where there is no port.
+    // The browser's dialog was closed. It shows by itself that there is no port.
     if (name === "NotFoundError") return undefined;
     throw new Error("The browser does not let this page use a serial port.");
   }

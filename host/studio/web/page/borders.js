@@ -14,7 +14,7 @@
  * @typedef {{ by: By, isUp: boolean, tMs: number, at: Place }} Crossing
  */
 
-/** A border is the mean of least and largest friction: this part of their difference beside it is on no side. */
+/** Part of the difference of least and largest friction around their mean, the border, that is on neither side. */
 const HYSTERESIS = 0.12;
 /** A board crosses a border within this time of the finger, ms, or misses it: 100 reports a second are no later. */
 const WITHIN_MS = 60;

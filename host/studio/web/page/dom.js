@@ -73,7 +73,7 @@ export function download(name, content, type) {
 }
 
 /**
- * A voltage, V rms: a small one with a digit behind the point, so that half a volt is no whole one, and not none.
+ * A voltage, V rms, in words. Small ones have a decimal, so that half a volt is rounded neither to 1 nor to 0.
  * @param {number} value
  */
 export function volts(value) {

@@ -18,8 +18,8 @@ const REST_AFTER_MS = 60_000;
 const STROKE_MS = 1500;
 const PAUSE_MS = 350;
 /**
- * Between two pictures it goes on by so much time at most, ms: a page that is held up slows it, and makes it no faster.
- * After a longer pause it comes down anew.
+ * Longest time step between two frames, ms: a busy page slows the ghost down, and never speeds it up. After a longer
+ * pause it touches down anew.
  */
 const STEP_MAX_MS = 24;
 const STALL_MS = 100;
@@ -115,7 +115,7 @@ export class Ghost {
     this.#say();
   }
 
-  /** Ends for good, and the words go. */
+  /** Ends for good, and removes the words. */
   dismiss() {
     this.end();
     this.#isDismissed = true;

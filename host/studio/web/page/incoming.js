@@ -164,7 +164,7 @@ function textOf(bytes) {
 }
 
 /**
- * What a TOML text is meant as; one that nobody can tell is read as a scene, for its mistakes.
+ * Kind of a TOML text. One of no known kind is read as a scene, to show its mistakes.
  * @param {string} text
  * @returns {Kind | "scene"}
  */

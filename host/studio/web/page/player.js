@@ -30,7 +30,7 @@ export class Player {
   /** How many actions that bring another text are under way. */
   #expected = 0;
   /**
-   * What came of the newest text that was checked: "loading" until then.
+   * Outcome of the newest text that was checked: "loading" until then.
    * @type {Status}
    */
   #outcome = "loading";
@@ -156,7 +156,7 @@ export class Player {
     this.#isBusy = false;
   }
 
-  /** Where the newest text is, as `onStatus` was told last. */
+  /** Status of the newest text, as last passed to `onStatus`. */
   get status() {
     return this.#status;
   }

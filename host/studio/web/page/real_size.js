@@ -8,7 +8,7 @@ import { attempt } from "./notices.js";
 
 /** A bank card, mm (ISO/IEC 7810 ID-1). */
 const CARD = { widthMm: 85.6, heightMm: 53.98 };
-/** CSS pixels per mm where nobody held a card to the screen: a CSS inch has 96. */
+/** Default CSS pixels per mm, without a measurement by a card: a CSS inch has 96. */
 const NOMINAL_PX_PER_MM = 96 / 25.4;
 
 export class RealSize {

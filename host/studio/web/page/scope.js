@@ -147,7 +147,7 @@ export class Scope {
     this.#draw();
   }
 
-  /** Another scene is open: what was felt of the one before is not of it. */
+  /** Clears the chart, because another scene is open. */
   clear() {
     this.#samples.clear();
     this.#touchedS = 0;

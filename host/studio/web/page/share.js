@@ -46,7 +46,7 @@ export function whoCanOpen({ protocol, hostname }) {
 }
 
 /**
- * The fragment of a link in a text that somebody pastes, or undefined.
+ * The fragment of a link in pasted text, or undefined.
  * @param {string} text
  */
 export function fragmentIn(text) {
