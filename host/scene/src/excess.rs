@@ -151,6 +151,9 @@ impl Demand<'_> {
             // A larger voltage also raises the target of a fraction.
             let has_fraction = self.layers.iter().any(|played| has_fraction(played.layer));
             let has_newtons = self.layers.iter().any(|played| played.layer.places.has_unit("_n"));
+            let is_added = self.layers.iter().any(|played| played.layer.blend == Blend::Add);
+            let is_amount = above == Above::Natural && !is_sum && !is_added && has_newtons && !has_fraction;
+            let may_be_total = is_amount && (0.0..=within.high).contains(&(asked.high - reach.natural_friction_n));
             let (target_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
             let part_of_reach = asked.high / reach.electric_friction_max_n;
             let mistake = FitMistake::AboveReach {
@@ -160,7 +163,7 @@ impl Demand<'_> {
                 part_of_reach: (has_fraction && !has_newtons).then(|| digits(part_of_reach, up)),
                 voltage_v_rms: digits(reach.voltage_max_v_rms, f64::round),
                 reach_n: digits(reach_n, f64::floor),
-                cure: self.cure_above(is_sum),
+                cure: self.cure_above(is_sum, Some(digits(asked.high, up)).filter(|_| may_be_total)),
                 raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
                 may_be_millinewtons: !has_fraction
                     && target_n > UNIT_MISTAKE_FACTOR * reach_n
@@ -181,12 +184,13 @@ impl Demand<'_> {
         sides
     }
 
-    /// Advice for friction above the reach.
-    fn cure_above(&self, is_sum: bool) -> Box<str> {
+    /// Advice for friction above the reach. It is within reach if it is meant in total as `total_n`.
+    fn cure_above(&self, is_sum: bool, total_n: Option<f64>) -> Box<str> {
         let lower = if is_sum { "lower one of them" } else { "lower it" };
-        match &self.largest_of {
-            Some(ridges) => format!("write `blend = \"max\"` in {ridges}, {lower}").into(),
-            None => lower.into(),
+        match (&self.largest_of, total_n) {
+            (Some(ridges), _) => format!("write `blend = \"max\"` in {ridges}, {lower}").into(),
+            (None, Some(total_n)) => format!("{lower}, write `above = \"zero\"` if {total_n} N is the total").into(),
+            (None, None) => lower.into(),
         }
     }
 

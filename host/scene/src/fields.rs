@@ -5,6 +5,7 @@ mod misplaced;
 mod text;
 mod values;
 
+pub use misplaced::has_unit;
 pub(super) use text::{parsed, read_text};
 pub(super) use values::TableOrText;
 
@@ -41,6 +42,9 @@ pub(super) struct Fields<'i> {
     /// Whether this table replaces one of `[defaults]`.
     replaces_default: bool,
 }
+
+/// The fields of a layer that may stand for its region, and are needed without one.
+const PLACE: [&str; 3] = ["x_mm", "y_mm", "width_mm"];
 
 /// Width and height of a pixel of a scene's design on its screen, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,12 +178,17 @@ impl<'i> Fields<'i> {
             let field = name.get_ref().clone().into_owned();
             log.add(name.span().start, FieldMistake::UnknownField { field, table: self.table.clone(), nearest });
         }
-        for field in &self.required {
+        let is_missing = |field: &&&str| {
             let is_reported =
-                misplaced.missing == Some(*field) || misspelt.iter().any(|word| stem(word) == stem(field));
-            if self.is_guess || self.places.has(field) || is_reported {
-                continue;
-            }
+                misplaced.missing == Some(**field) || misspelt.iter().any(|word| stem(word) == stem(field));
+            !(self.is_guess || self.places.has(field) || is_reported)
+        };
+        let missing: Vec<&'static str> = self.required.iter().filter(is_missing).copied().collect();
+        let has_no_place = self.key == "layer" && PLACE.iter().all(|field| missing.contains(field));
+        if has_no_place {
+            log.add(self.places.table(), FieldMistake::MissingPlace { table: self.table.clone() });
+        }
+        for field in missing.iter().filter(|field| !(has_no_place && PLACE.contains(field))) {
             let replaces = if self.replaces_default { ", which replaces the default as a whole," } else { "" };
             let (other, table) = (self.other_unit(field), format!("{}{replaces}", self.table));
             log.add(self.places.table(), FieldMistake::MissingField { field, other, table });
@@ -222,6 +231,11 @@ impl<'i> Fields<'i> {
     pub(super) fn raw_text(&self, field: &str) -> Option<(usize, String)> {
         let value = self.values.get(field).or_else(|| self.defaults.get(field))?;
         Some((value.span().start, value.get_ref().as_str()?.to_owned()))
+    }
+
+    /// Whether the table has fields that were not read yet.
+    pub(super) fn has_unread(&self) -> bool {
+        !self.values.is_empty()
     }
 
     /// Whether the file has a field that was read.

@@ -88,6 +88,7 @@ pub use amount_reach::AmountReach;
 pub use compile::{compile, compile_draft, compile_draft_with_amounts};
 pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
+pub use fields::has_unit;
 pub use file::Scene;
 pub use files::{FileUnavailable, Files};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display};
 
+use crate::grammar::stem as without_unit;
+
 /// The known words, and the most similar one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
@@ -81,7 +83,7 @@ impl Nearest {
         let suggestion = known
             .iter()
             .rev()
-            .map(|word| (strsim::jaro_winkler(&found, &word.to_lowercase()), word))
+            .map(|word| (likeness(&found, &word.to_lowercase()), word))
             .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
             .max_by(|(one, _), (other, _)| one.total_cmp(other))
             .map(|(_, word)| word.clone());
@@ -96,6 +98,11 @@ impl Nearest {
             files.iter().filter(is_alike).partition(|file| ending(file) == ending(found));
         same_ending.first().or(other.first()).map(|file| (*file).clone())
     }
+}
+
+/// The similarity of two words, the known one with its unit or without.
+fn likeness(found: &str, known: &str) -> f64 {
+    strsim::jaro_winkler(found, known).max(strsim::jaro_winkler(found, without_unit(known)))
 }
 
 /// The part of a file name before the extension.

@@ -155,9 +155,6 @@ mod tests {
     fn layers_that_only_share_a_cell_are_not_said_to_meet() {
         let text = format!("{HEAD}{}{}", layer(0), layer(20));
         let message = message(&text, -1).expect("it is refused");
-        assert!(
-            message.contains("layer 1 (grating) and layer 2 (grating) share a cell of the board's grid"),
-            "{message}"
-        );
+        assert!(message.contains("layer 1 (grating) and layer 2 (grating) lie too close together at x"), "{message}");
     }
 }

@@ -40,10 +40,7 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
     assert!(text.contains("levels = \"stretch\"") && !text.contains("pitch_mm"), "{text}");
     let (said, _) = succeed(folder.path(), &["check", "photo.toml"]);
-    assert!(
-        said.contains("colour turned to grey by luminance") && said.contains("the finest pitch that fits"),
-        "{said}"
-    );
+    assert!(said.contains("colour turned to grey by luma") && said.contains("the finest pitch that fits"), "{said}");
     assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");
 }
 

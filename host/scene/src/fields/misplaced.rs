@@ -134,8 +134,21 @@ pub(super) fn explained(text: &str, offset: usize, reason: &str) -> (usize, Stri
     // A byte order mark begins many files.
     match invisible(line).filter(|(place, _)| line_start + place > 0) {
         Some((place, said)) => (line_start + place, said),
-        None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
+        None => match value_at(line, offset - line_start).filter(|value| has_unit(value)) {
+            Some(value) => (offset, format!("`{}` is no number; {UNIT_ADVICE}", brief(value))),
+            None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
+        },
     }
+}
+
+/// The value of the field of a line, or of a table within braces, in which a place is.
+fn value_at(line: &str, place: usize) -> Option<&str> {
+    let code = line.split('#').next().unwrap_or_default();
+    let (before, _) = code.split_at_checked(place)?;
+    let start = before.rfind('=').or_else(|| code.find('='))? + 1;
+    let value = code.get(start..)?;
+    let end = if before.contains('{') { value.find([',', '}']).unwrap_or(value.len()) } else { value.len() };
+    value.get(..end).map(str::trim)
 }
 
 /// The place of the first invisible character of a line outside of quotation marks and comments, with what to do.
@@ -171,8 +184,6 @@ fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> Stri
         "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
     } else if value.is_some_and(|value| value.starts_with(CURLY_QUOTES)) {
         "; quotation marks are straight: \"".to_owned()
-    } else if value.is_some_and(has_unit) {
-        format!("; {UNIT_ADVICE}")
     } else if let Some(percent) = value.and_then(percent) {
         format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
     } else if value.is_some_and(|value| value.contains('\\'))
@@ -195,7 +206,7 @@ const CURLY_QUOTES: [char; 6] = ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}',
 pub(super) const UNIT_ADVICE: &str = "leave the unit out: the field's name has it";
 
 /// Whether a value is a number with a unit behind it, as in `4 mm`.
-pub(super) fn has_unit(value: &str) -> bool {
+pub fn has_unit(value: &str) -> bool {
     let is_of_unit = |character: char| character.is_alphabetic() || "°/".contains(character);
     let number = value.trim_end_matches(is_of_unit);
     number != value && number.trim_end().parse::<f64>().is_ok()

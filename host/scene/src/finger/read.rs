@@ -7,6 +7,7 @@ use crate::fields::Fields;
 use crate::grammar::FieldSpec;
 use crate::log::Log;
 use crate::mistake::FieldMistake;
+use crate::profile::Profile;
 use crate::tables::finger as table;
 
 const MODELS: [(&str, bool); 2] = [("winkler-fuss", false), ("soft", true)];
@@ -19,6 +20,10 @@ const ORIGINS: [(&str, Origin); 4] = [
 
 /// Reads a whole table, that of a file or `[finger]` of a scene.
 pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
+    if let Some((place, name)) = fields.raw_text("name").filter(|(_, name)| FingerProfile::bundled(name).is_some()) {
+        log.add(place, FieldMistake::BundledFinger { name });
+        return None;
+    }
     let friction_coefficient = fields.number(log, &table::FRICTION_COEFFICIENT);
     let normal_load_n = fields.number(log, &table::NORMAL_LOAD_N);
     let origin = fields.choice_or_nearest(log, &table::ORIGIN, &ORIGINS).unwrap_or(Origin::Assumed);

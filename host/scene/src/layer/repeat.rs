@@ -28,9 +28,11 @@ impl Repeat {
         let rows = fields.number_or_default(log, &tables::repeat::ROWS) as u32;
         let dx_mm = fields.length_mm(log, &tables::repeat::DX).unwrap_or_default();
         let dy_mm = fields.length_mm(log, &tables::repeat::DY).unwrap_or_default();
+        let has_unknown = fields.has_unread();
         let places = fields.close(log);
         for (what, step, copies, step_mm) in [("columns", "dx_mm", columns, dx_mm), ("rows", "dy_mm", rows, dy_mm)] {
-            if copies > 1 && step_mm.abs() <= 0.0 {
+            // An unknown field is probably the spacing, misspelt.
+            if copies > 1 && step_mm.abs() <= 0.0 && !has_unknown {
                 log.add(places.field(step), FieldMistake::RepeatInPlace { what, step });
             }
         }

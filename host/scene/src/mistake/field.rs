@@ -45,6 +45,18 @@ pub enum FieldMistake {
         /// The table.
         table: String,
     },
+    /// A layer that needs a place has none.
+    #[error("{table} has no place: add a `region`, or `x_mm`, `y_mm` and `width_mm`")]
+    MissingPlace {
+        /// The layer.
+        table: String,
+    },
+    /// The table of a finger has the name of a bundled one in place of its fields.
+    #[error("a finger has no `name`: for a bundled one, write `finger = \"{name}\"` above the first [[layer]]")]
+    BundledFinger {
+        /// The name.
+        name: String,
+    },
     /// A value has another type than expected.
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType {

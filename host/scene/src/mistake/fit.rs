@@ -110,7 +110,7 @@ pub enum FitMistake {
         match (*.alone, *.meet) {
             (true, _) => "takes too long",
             (false, true) => "overlap",
-            (false, false) => "share a cell of the board's grid, though they do not overlap,",
+            (false, false) => "lie too close together",
         },
         if *.alone { "use another kind of layer, or another board" } else { "move layers apart, or leave some out" }
     )]

@@ -20,7 +20,7 @@ const WHITE: u16 = u16::MAX;
 /// An 8-bit step in 16-bit steps.
 const STEP: f32 = 257.0;
 /// The note about a picture converted to grey.
-const COLOUR: &str = "colour turned to grey by luminance";
+const COLOUR: &str = "colour turned to grey by luma";
 /// Reciprocal of the fraction of samples that `levels = "stretch"` clips to black, and to white.
 const STRETCHED_PART: usize = 100;
 

@@ -73,8 +73,8 @@ macro_rules! variants {
     };
 }
 
-variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misplaced MissingField WrongType
-    QuotedNumber NotATable NotTables OutOfRange TooLong UnknownChoice NoDefault NoDesign
+variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misplaced MissingField MissingPlace
+    BundledFinger WrongType QuotedNumber NotATable NotTables OutOfRange TooLong UnknownChoice NoDefault NoDesign
     LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
 variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version

@@ -263,7 +263,7 @@ fn any_colour_type_becomes_grey_and_says_what_was_done() {
     check(
         &read_png(Rgb, Eight, &[255, 0, 0, 0, 100, 200]),
         [0.2126 * 255.0, 0.7152 * 100.0 + 0.0722 * 200.0],
-        &["colour turned to grey by luminance"],
+        &["colour turned to grey by luma"],
     );
     let half = || read_png(GrayscaleAlpha, Eight, &[100, 255, 100, 51]);
     check(&half().laid_over(Ground::Black, false), [100.0, 20.0], &["transparency laid over black"]);
