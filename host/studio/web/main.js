@@ -254,7 +254,7 @@ function showWhatIsFelt(parts) {
   const pace = byId("pace");
   engine.onPace = (part) => {
     pace.hidden = part === 1;
-    pace.textContent = `This computer plays at ${part} of real time: curves have steps, and the finger lifts between.`;
+    pace.textContent = `This computer plays at ${part} of real time: curves look jagged, and touch drops out.`;
   };
   engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
   finger.onDown = () => {
