@@ -101,8 +101,10 @@ export class Board {
     board.dataset.state = state;
     Object.assign(document.documentElement.dataset, { state, link });
     const name = link === "simulator" ? "Simulator" : driving;
+    const isStopped = link === "simulator" && state === "disarmed";
+    const word = isStopped ? "stopped" : STATE_WORDS[state];
     const details = fault && link !== "none" ? `, ${fault}` : "";
-    board.textContent = link === "none" ? "No board" : `${name}: ${STATE_WORDS[state]}${details}`;
+    board.textContent = link === "none" ? "No board" : `${name}: ${word}${details}`;
     board.title = board.textContent;
     this.#showArm(needsArm);
     const arm = byId("arm");
@@ -111,9 +113,8 @@ export class Board {
     byId("clear-fault").hidden = state !== "faulted" || link === "simulator";
     const stop = byId("stop");
     stop.hidden = link === "none";
-    const isStopped = state === "disarmed";
-    stop.textContent = isStopped && link === "simulator" ? "Play" : "Stop";
-    if (isStopped && link === "simulator") stop.dataset.stopped = "true";
+    stop.textContent = isStopped ? "Play" : "Stop";
+    if (isStopped) stop.dataset.stopped = "true";
     else delete stop.dataset.stopped;
     this.onState();
   }
