@@ -22,6 +22,8 @@ import { innerFields, layerFields } from "./completion.js";
 const PLACE = ["x", "y", "height"];
 /** Fields that count without being written, with their defaults. */
 const DEFAULTS = { angle_deg: 0, gain: 1 };
+/** Labels of fields whose names alone would be those of others. @type {Record<string, string>} */
+const LABELS = { click_ms: "click time", width_mm: "line width" };
 /** What numbers mean, by their labels. @type {Record<string, string>} */
 const NUMBER_MEANINGS = {
   along: "friction along its direction",
@@ -29,11 +31,13 @@ const NUMBER_MEANINGS = {
   angle: "turn of the pattern",
   black: "friction where it is black",
   click: "friction of the click",
+  "click time": "how long the click lasts",
   duty: "part of a wave that is high",
   face: "friction inside the rim",
   friction: "friction all over it",
   gain: "all of its friction, times this",
   high: "most friction",
+  "line width": "how wide the line is",
   low: "least friction",
   number: "how many around",
   ridge: "friction on the line",
@@ -44,7 +48,6 @@ const NUMBER_MEANINGS = {
   "wavelength max": "coarsest grain",
   "wavelength min": "finest grain",
   white: "friction where it is white",
-  width: "how wide the line is",
 };
 /** @type {["columns" | "rows", string, "x" | "y", "width" | "height", string][]} */
 const REPEATS = [
@@ -91,7 +94,7 @@ export function layerNumbers(schema, toml, at, { kind, amountReach }) {
     const { minimum: min = -1e6, maximum: max = 1e6 } = about;
     const reach = amountReach[field];
     const [least, most] = reach ? [value < 0 ? reach[0] : Math.max(0, reach[0]), reach[1]] : ends(unit, label, value);
-    const name = field === "gain" ? "gain" : label.replaceAll("_", " ");
+    const name = LABELS[field] ?? label.replaceAll("_", " ");
     return {
       field,
       label: name,
