@@ -52,7 +52,7 @@ export class Gallery {
   async #fill(card, canvas, name) {
     const text = await sceneText(name);
     const found = await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
-    const open = choiceButton(this.#dialog, `Open ${name}`, () => this.onScene(name, text));
+    const open = choiceButton(this.#dialog, `Open ${titleOf(name)}`, () => this.onScene(name, text));
     canvas.onclick = () => open.click();
     const list = element("ul", {}, ...this.#layers(text, found));
     const layers = element("details", {}, element("summary", {}, "Layers"), list);
@@ -76,13 +76,16 @@ export class Gallery {
   }
 }
 
+/** The title of a bundled scene; its words are shown with capitals. @param {string} name */
+const titleOf = (name) => name.replaceAll("_", " ");
+
 /**
  * A card whose picture has its place before it is drawn.
  * @param {string} name
  */
 function emptyCard(name) {
   const canvas = element("canvas", { "aria-hidden": "true" });
-  const card = element("article", { className: "scene" }, canvas, element("h3", {}, name.replaceAll("_", " ")));
+  const card = element("article", { className: "scene" }, canvas, element("h3", {}, titleOf(name)));
   return { card, canvas };
 }
 
