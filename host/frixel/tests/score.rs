@@ -117,7 +117,7 @@ fn a_plate_has_no_ratios_and_is_not_noticed() {
     }
     let (_, row) = lines.iter().find(|(name, _)| name == "layer 1 (constant)").unwrap();
     assert_eq!(row, "felt by 0 of 2; contrast 0.0 Weber steps");
-    let verdict = "0 of 1 layer is noticed by 2 of 2 simulated fingers; noticed by fewer: layer 1 (constant) by 0";
+    let verdict = "not noticed by all 2 simulated fingers: layer 1 (constant) by 0";
     assert_eq!(lines[0].0, verdict);
 }
 

@@ -28,7 +28,13 @@ pub enum PortError {
         /// Path of the port.
         port: String,
     },
-    /// Any other refusal by the operating system, for example because the path is not a serial port.
+    /// The path is that of a file or a folder.
+    #[error("{port} is no serial port; `frixel board ports` lists those of this machine")]
+    NoPort {
+        /// The path that was given.
+        port: String,
+    },
+    /// Any other refusal by the operating system.
     #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
     NotOpened {
         /// Path of the port.

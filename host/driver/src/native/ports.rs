@@ -84,12 +84,14 @@ fn port_info(port: serialport::SerialPortInfo) -> PortInfo {
 pub(super) fn why_not_opened(port: &str, error: serialport::Error) -> PortError {
     use serialport::ErrorKind as Kind;
 
+    let is_other = || std::fs::metadata(port).is_ok_and(|found| found.is_file() || found.is_dir());
     let port_exists = || Path::new(port).exists() || port_paths().iter().any(|path| path == port);
     match error.kind {
         // On Windows the same kind means that the port does not exist.
         Kind::NoDevice if port_exists() => PortError::Busy { port: port.into() },
         Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => not_there(port),
         Kind::Io(ErrorKind::PermissionDenied) => PortError::NoPermission { port: port.into() },
+        _ if is_other() => PortError::NoPort { port: port.into() },
         _ => PortError::NotOpened { port: port.into(), reason: error.description },
     }
 }
@@ -131,7 +133,8 @@ mod tests {
         assert!(matches!(why("nowhere", serialport::ErrorKind::NoDevice), PortError::NotThere { .. }));
         assert!(matches!(why("nowhere", io(ErrorKind::NotFound)), PortError::NotThere { .. }));
         assert!(matches!(why(path, io(ErrorKind::PermissionDenied)), PortError::NoPermission { .. }));
-        assert!(matches!(why(path, serialport::ErrorKind::Unknown), PortError::NotOpened { .. }));
+        assert_eq!(why(path, serialport::ErrorKind::Unknown), PortError::NoPort { port: path.into() });
+        assert!(matches!(why("nowhere", serialport::ErrorKind::Unknown), PortError::NotOpened { .. }));
         assert!(why(path, io(ErrorKind::PermissionDenied)).to_string().contains("dialout"));
     }
 }

@@ -206,9 +206,10 @@ fn told(layer: &LayerVerdict) -> Vec<String> {
 
 fn step_text(step: &Step, place: &str) -> String {
     let Step { from_n, to_n, weber_steps, verdict, .. } = step;
-    let steps = weber_steps_text(*weber_steps);
+    let steps = weber_steps_text(weber_steps.abs());
+    let down = if *weber_steps < 0.0 { " down" } else { "" };
     let as_a_step = if *verdict == Verdict::NotFelt { ": not felt as a step" } else { "" };
-    format!("{} to {} mN{place}, {steps} Weber steps{as_a_step}", millinewtons(*from_n), millinewtons(*to_n))
+    format!("{} to {} mN{place}, {steps} Weber steps{down}{as_a_step}", millinewtons(*from_n), millinewtons(*to_n))
 }
 
 fn texture_text(texture: &Texture) -> String {
@@ -235,7 +236,7 @@ fn reason_text(reason: &Reason) -> Option<String> {
                 SizeLimit::Fingertip => "a fingertip",
                 SizeLimit::TouchSource => "the touch source",
             };
-            format!("too small for {limit}: the scene has {} Weber steps", weber_steps_text(*weber_steps))
+            format!("too narrow for {limit}, whatever the scene's {} Weber steps", weber_steps_text(*weber_steps))
         }
         Reason::TooSlow { way_mm, weber_steps } => {
             format!("too slow a slope: {} in total, over more than {way_mm:.0} mm", weber_steps_text(*weber_steps))

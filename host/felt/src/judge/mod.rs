@@ -302,8 +302,7 @@ impl Measured {
 fn notes(program: &Program) -> Vec<String> {
     let changes = Reference::new(program).changes_by_itself();
     let still = changes.then(|| {
-        "Only a sliding finger feels vibrations and streams: 30 % of people feel 125 Hz with a resting finger (Dryad \
-         9ghx3ffgp)."
+        "A resting finger hardly feels vibrations and streams: 30 % of people do at 125 Hz (Dryad 9ghx3ffgp)."
             .to_owned()
     });
     let empty = program.records.is_empty().then(|| "the scene has no layer: there is nothing to feel".to_owned());

@@ -56,6 +56,9 @@ impl Score {
         let all = format!("{} of {} {what} {is} noticed by {by}", by_all.len(), layers.len());
         match (below.len(), fingers) {
             (0, _) => all,
+            (_, fingers) if fingers > 1 && by_all.is_empty() => {
+                format!("not noticed by all {fingers} simulated fingers: {}", by_count(&below, fingers))
+            }
             (_, 1) => format!("{all}; {}", by_verdict(&below)),
             _ => format!("{all}; noticed by fewer: {}", by_count(&below, fingers)),
         }
@@ -172,8 +175,7 @@ mod tests {
         );
         assert_eq!(
             score(8, bars(7, [3, 0]), Vec::new()).sentence(),
-            "0 of 2 layers are noticed by 8 of 8 simulated fingers; noticed by fewer: layer 1 \"bar 1\" by 3 of 7, \
-             layer 2 \"bar 2\" by 0 of 7"
+            "not noticed by all 8 simulated fingers: layer 1 \"bar 1\" by 3 of 7, layer 2 \"bar 2\" by 0 of 7"
         );
     }
 
@@ -239,8 +241,7 @@ mod tests {
         let key = |copy| layer(title(1, Some(copy), &format!("key {copy}")), verdicts(4, copy % 3, 0));
         assert_eq!(
             score(4, (1..=30).map(key).collect(), Vec::new()).sentence(),
-            "0 of 30 layers are noticed by 4 of 4 simulated fingers; noticed by fewer: layer 1.3 \"key 3\" with 29 more \
-             copies by 0 at least"
+            "not noticed by all 4 simulated fingers: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();
