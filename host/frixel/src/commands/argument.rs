@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
 use std::str::FromStr;
 
+use frixel_scene::has_unit;
+
 /// Heading of the options that few people need, in the help of a command.
 pub(super) const RARE: &str = "Rare options";
 /// Longest code of a participant, in characters.
@@ -11,7 +13,9 @@ const PARTICIPANT_MAX: usize = 32;
 
 /// Parses a number in a range; otherwise says what was expected.
 pub(super) fn number(text: &str, range: impl RangeBounds<f64>, expected: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| format!("expected {expected}"))
+    let without_unit = || if has_unit(text) { ", without a unit" } else { "" };
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("expected {expected}{}", without_unit()))
 }
 
 /// Parses a quantity above zero.

@@ -30,8 +30,7 @@ pub(super) struct CheckArgs {
     /// counts, which nobody touches.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: Option<String>,
-    /// That board with another resistance between amplifier and electrode, kOhm, and up to its full scale: what its
-    /// touch bound leaves (`frixel board safety`).
+    /// Another series resistance of that board, kOhm; voltages up to its touch bound (`frixel board safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// Also print the bytes and cycles behind *fits*.
@@ -109,7 +108,7 @@ fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> 
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
     let judgement = judge(&draft, &judged_rig(rig.board, *touch), Advice::Omitted, TO_THE_END);
     let felt = feel::text(&feel::lines(&judgement.map_err(of_simulation)?));
-    print(board_line(&rig.board, &draft, "refuses it; clamped to what it can give") + &felt)
+    print(board_line(&rig.board, &draft, "refuses it; what follows is clamped to what it can give") + &felt)
 }
 
 /// The board, the voltage that it gives at the scene's carrier, and the friction of the scene's finger there.
@@ -117,8 +116,8 @@ fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
     let until_measured = board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
         format!(
-            "                   nothing stores limits on this board yet: it allows {v_peak} V peak \
-             (docs/board/pico.md)\n"
+            "                   the verdicts are for that; nothing stores limits on this board yet: it allows {v_peak} \
+             V peak (docs/board/pico.md)\n"
         )
     });
     format!(

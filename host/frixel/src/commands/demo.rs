@@ -36,16 +36,18 @@ pub(super) fn run(args: &DemoArgs) -> Result<()> {
     let scene = args.out.join("brick.toml");
     create(&args.out.join(PICTURE_NAME), PICTURE)?;
     let place = scene.display();
+    let slides = "a simulated finger slides over it for three seconds";
     if create(&scene, SCENE.as_bytes())? {
         print_line(format_args!("{place} is new: a wall of bricks, as a picture of friction"))?;
+        print_line(format_args!(
+            "{slides}; on mortar its friction rises by a quarter, assumed: more than two of the smallest steps that a \
+             finger feels"
+        ))?;
     } else {
         print_line(format_args!("{place} plays as it is in this folder; remove it to get the bundled one back"))?;
+        print_line(slides)?;
     }
     let out = args.out.display();
-    print_line(format_args!(
-        "a simulated finger slides over it for three seconds; on mortar its friction rises by a quarter, assumed: more than \
-         two of the smallest steps that a finger feels"
-    ))?;
     print_line(format_args!("open {out}/scene.png for the path of the finger, {out}/felt.svg for what it felt"))?;
     play::run(&PlayArgs::ideal(&scene, &args.out)?)?;
     print_line(format_args!("change {place} and play it again: frixel play {place}"))

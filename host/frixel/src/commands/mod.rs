@@ -64,7 +64,7 @@ enum Command {
     Preview(preview::PreviewArgs),
     /// Print the JSON schema of the scene file, for editors.
     Schema,
-    /// Score how faithfully simulated fingers feel a scene.
+    /// Say which layers simulated fingers notice.
     Score(score::ScoreArgs),
     /// Play every combination of scenes, people, screens and values, and draw which simulated fingers feel what.
     Sweep(sweep::SweepArgs),
@@ -96,13 +96,13 @@ struct SimArgs {
     stroke: StrokeArgs,
     /// The finger on this board, which its scenes do not change: a profile's file, or `example`, `dry`, `moist` or
     /// `light`. Without it, the finger is that of the scene that plays.
-    #[arg(long, value_name = "FILE", group = "own_finger")]
+    #[arg(long, value_name = "NAME|FILE", group = "own_finger")]
     finger: Option<String>,
     /// A simulated person in place of --finger: another one for each seed.
     #[arg(long, value_name = "N", group = "own_finger")]
     finger_seed: Option<u64>,
     /// The screen under that finger: a screen's file, or `example`, which it is without this.
-    #[arg(long, value_name = "FILE", requires = "own_finger")]
+    #[arg(long, value_name = "NAME|FILE", requires = "own_finger")]
     screen: Option<String>,
     #[command(flatten)]
     touch: profiles::TouchArgs,

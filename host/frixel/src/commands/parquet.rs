@@ -13,8 +13,14 @@ pub(super) fn is_named_so(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
-/// Rejects the code of a participant for an output that has no place for it.
-pub(super) fn check_participant(output: &Path, participant: Option<&str>) -> Result<()> {
+/// Rejects a recording whose name says neither CSV nor Parquet, and the code of a participant for one in CSV, which has
+/// no place for it. A device, a pipe and standard output have names of their own.
+pub(super) fn check_output(output: &Path, participant: Option<&str>) -> Result<()> {
+    let is_csv = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let is_stream = output == Path::new("-") || output.metadata().is_ok_and(|found| !found.is_file());
+    if !is_csv && !is_named_so(output) && !is_stream {
+        bail!("{} is no CSV or Parquet file by its name: end it in .csv or .parquet", output.display());
+    }
     if participant.is_some() && !is_named_so(output) {
         bail!(
             "--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet",

@@ -11,10 +11,10 @@ use frixel_scene::Screen;
 #[derive(Clone, Debug, Args)]
 pub(super) struct ProfileArgs {
     /// Finger in place of the scene's: `example`, `dry`, `moist`, `light` or a profile's file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "NAME|FILE")]
     finger: Option<String>,
     /// Screen in place of the scene's: `example` or a screen's file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "NAME|FILE")]
     screen: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! `frixel score`: how faithfully simulated fingers feel a scene.
+//! `frixel score`: which layers simulated fingers notice, and how faithfully they feel a scene.
 
 use std::path::{Path, PathBuf};
 

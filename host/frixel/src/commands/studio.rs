@@ -24,8 +24,8 @@ const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
 /// There is no page, and no checkout that could have one.
-const NO_PAGE: &str = "there is no frixel-studio.html beside this command, and this folder is in no checkout of \
-                       frixel, where `cargo xtask studio` makes one: give --page FILE.html";
+const NO_PAGE: &str = "no page found: run `cargo xtask studio` in a checkout of frixel (some minutes), or give --page \
+                       FILE.html";
 /// Folders of a checkout that the page is made from.
 const SOURCES: [&str; 11] = [
     "firmware",

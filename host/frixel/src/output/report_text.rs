@@ -21,8 +21,20 @@ impl Report {
         }
         lines.extend(self.stream_line().filter(|_| verbose || self.stream_has_holes()));
         lines.extend(self.felt_lines());
-        lines.extend(self.error_line("friction error", size(self.friction_error_rms_n, self.friction_error_max_n)));
+        let error = size(self.friction_error_rms_n, self.friction_error_max_n);
+        lines.extend(if verbose { self.error_line("friction error", error) } else { self.error_in_percent(error) });
         feel::text(&lines)
+    }
+
+    /// The friction error for a person: a part of what the drive can add.
+    fn error_in_percent(&self, error: Option<ErrorSize>) -> Option<Line> {
+        let percent = self.percent_of_range(error?.rms_n);
+        let decimals = usize::from(percent < 10.0);
+        Some(("friction error", format!("{percent:.decimals$} % of what the drive can add, rms")))
+    }
+
+    fn percent_of_range(&self, friction_n: f64) -> f64 {
+        100.0 * friction_n / (self.reachable_max_n - self.reachable_min_n)
     }
 
     fn world_lines(&self) -> Vec<Line> {
@@ -66,9 +78,15 @@ impl Report {
     /// An error, also relative to the reachable electric range.
     fn error_line(&self, name: &'static str, error: Option<ErrorSize>) -> Option<Line> {
         let ErrorSize { rms_n, max_n } = error?;
-        let percent = |newtons: f64| 100.0 * newtons / (self.reachable_max_n - self.reachable_min_n);
         let in_mn = format!("{:.4} mN rms, {:.4} mN at most", 1e3 * rms_n, 1e3 * max_n);
-        Some((name, format!("{in_mn} ({:.3} % and {:.3} % of the range)", percent(rms_n), percent(max_n))))
+        Some((
+            name,
+            format!(
+                "{in_mn} ({:.3} % and {:.3} % of the range)",
+                self.percent_of_range(rms_n),
+                self.percent_of_range(max_n)
+            ),
+        ))
     }
 
     fn board_lines(&self) -> Vec<Line> {
@@ -106,7 +124,10 @@ impl Report {
     fn felt_lines(&self) -> Vec<Line> {
         let verdicts = self.in_this_play.as_deref();
         let no_verdict = match verdicts {
-            Some([]) => Some("the finger slid on no layer while the board drove"),
+            Some([]) => Some(
+                "the finger slid on no layer for long enough while the board drove: slide over a layer, or give a \
+                 smaller --speed",
+            ),
             _ => self.no_verdict,
         };
         let no_verdict = no_verdict.map(|why| ("in this play", format!("no verdict: {why}")));

@@ -11,7 +11,7 @@ fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("frixel-out/brick.toml");
     let (said, _) = succeed(folder.path(), &["demo"]);
-    assert!(said.contains("brick.toml is new"), "{said}");
+    assert!(said.contains("brick.toml is new") && said.contains("on mortar its friction rises"), "{said}");
     assert!(said.contains("frixel play frixel-out/brick.toml"), "{said}");
 
     let bundled = fs::read_to_string(&path).unwrap();
@@ -24,7 +24,7 @@ fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     fs::write(&picture, &mine).unwrap();
 
     let (said, _) = succeed(folder.path(), &["demo"]);
-    assert!(said.contains("brick.toml plays as it is"), "{said}");
+    assert!(said.contains("brick.toml plays as it is") && !said.contains("on mortar"), "{said}");
     assert_eq!(fs::read_to_string(&path).unwrap(), edited);
     assert_eq!(fs::read(&picture).unwrap(), mine);
     // Mortar is at 0.76 from black to white: 39 mN instead of 102 mN above the natural friction of 250 mN.

@@ -41,9 +41,12 @@ pub(super) fn run(args: &FaultsArgs) -> Result<()> {
     }
     let is_latched = hello.state == State::Faulted;
     line("latched", if is_latched { "yes: the output is zero until it is cleared" } else { "no" }.to_owned())?;
-    if args.clear && is_latched {
-        device.clear_fault()?;
-        line("cleared", "yes: the board is disarmed".to_owned())?;
+    match (args.clear, is_latched) {
+        (false, _) => Ok(()),
+        (true, false) => line("cleared", "nothing was latched".to_owned()),
+        (true, true) => {
+            device.clear_fault()?;
+            line("cleared", "yes: the board is disarmed".to_owned())
+        }
     }
-    Ok(())
 }

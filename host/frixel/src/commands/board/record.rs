@@ -53,7 +53,7 @@ pub(in crate::commands) struct RecordArgs {
 }
 
 pub(super) fn run(args: &RecordArgs) -> Result<()> {
-    parquet::check_participant(&args.output, args.participant.as_deref())?;
+    parquet::check_output(&args.output, args.participant.as_deref())?;
     let recording = OutputFile::recording(&args.output, "-o", &Inputs::default(), args.overwrite)?;
     if args.finish {
         let (writer, text) = recording.resume()?;
@@ -85,7 +85,8 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
 
 fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interrupt, rows: &mut Rows) -> Result<()> {
     device.subscribe(device.hello().tick_hz / ROWS_HZ)?;
-    note("slide a finger over the screen; Ctrl-C ends the record");
+    let ends = args.seconds.map_or("Ctrl-C ends the record".to_owned(), |seconds| format!("recording for {seconds} s"));
+    note(format_args!("slide a finger over the screen; {ends}"));
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));
     while !interrupt.is_requested() && end.is_none_or(|end| device.now() < end) {
         let mut written = Ok(());

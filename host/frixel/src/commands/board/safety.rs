@@ -46,7 +46,7 @@ pub(in crate::commands) struct SafetyArgs {
     #[arg(long, value_name = "KOHM", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// The screen whose coating is touched: a screen's file, or `example`.
-    #[arg(long, value_name = "FILE", default_value = "example")]
+    #[arg(long, value_name = "NAME|FILE", default_value = "example")]
     screen: String,
     /// The voltage for which the least series resistance is looked for, V rms.
     #[arg(long, value_name = "V", default_value_t = 150.0, value_parser = argument::positive, allow_negative_numbers = true)]
@@ -109,8 +109,8 @@ impl Table {
             ),
             (
                 "bound",
-                "the largest peak voltage that the board takes, so that no coating, thin or bridged, and no envelope \
-                 lets more through; the board refuses a scene above it"
+                "the largest peak voltage for which no coating, thin or bridged, and no envelope lets more through; \
+                 the board refuses a scene above it, or above its own limit in the first line"
                     .to_owned(),
             ),
         ]
@@ -199,7 +199,7 @@ impl Table {
     /// Part of the drive's voltage that is across the finger's gap, and the part of the force, by return path.
     fn return_paths(&self) -> String {
         let mut text = format!(
-            "Voltage across the finger's gap ({:.0} pF), and force there, in % of what the model takes\n",
+            "Voltage across the finger's gap, of {:.0} pF, and force there, in % of what the model takes\n",
             1e12 * GAP_F
         );
         for (name, path) in RETURN_PATHS {

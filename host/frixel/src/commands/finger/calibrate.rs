@@ -66,7 +66,7 @@ pub(in crate::commands) struct CalibrateArgs {
 }
 
 pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
-    parquet::check_participant(&args.output, args.participant.as_deref())?;
+    parquet::check_output(&args.output, args.participant.as_deref())?;
     let inputs = Inputs::new(&args.forces);
     let recording = OutputFile::recording(&args.output, "-o", &inputs, args.overwrite)?;
     if args.finish {

@@ -42,7 +42,7 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
     let link = port::open(port, &[])?;
     let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
-        print_line(format_args!("The line will be tested for {line_seconds} s; --seconds is another time."))?;
+        print_line(format_args!("The line will be tested for {line_seconds} s; `--seconds` changes that."))?;
     }
     let talked = host.talk(port);
     let report = host.report;
