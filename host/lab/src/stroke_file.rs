@@ -37,7 +37,19 @@ pub enum StrokeFileError {
     /// A needed column is missing, or a cell is not a number.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The rows do not describe a stroke of a finger.
+    /// A number is not one of a stroke.
+    #[error("row {row}, column {column}: {reason}{}", .if_in_file)]
+    Number {
+        /// Its row, as people count them: the header is row 1.
+        row: u64,
+        /// The name of its column.
+        column: &'static str,
+        /// What was found, and what is expected.
+        reason: String,
+        /// What may help besides where the numbers are those of a file.
+        if_in_file: &'static str,
+    },
+        /// The rows do not describe a stroke of a finger.
     #[error("{0}")]
     Refused(String),
     /// The finger cannot go through the places.
@@ -77,14 +89,12 @@ impl StrokeFile {
             let read = stroke_row(&row, places, load)?;
             let (row, found_s) = (row.number(), read.t_s);
             if found_s < 0.0 {
-                return Err(StrokeFileError::Refused(format!(
-                    "row {row}, column t_s: {found_s} is below 0: give time from the start of the stroke"
-                )));
+                let reason = format!("{found_s} is below 0: give time from the start of the stroke");
+                return Err(refused(row, TIME, reason));
             }
             if let Some(previous_s) = rows.last().map(|row| row.t_s).filter(|previous_s| *previous_s >= found_s) {
-                return Err(StrokeFileError::Refused(format!(
-                    "row {row}, column t_s: {found_s} comes after {previous_s}: give times that rise from row to row"
-                )));
+                let reason = format!("{found_s} comes after {previous_s}: give times that rise from row to row");
+                return Err(refused(row, TIME, reason));
             }
             rows.push(read);
         }
@@ -120,19 +130,33 @@ pub fn to_csv(rows: impl IntoIterator<Item = [f64; 4]>) -> String {
 fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<StrokeRow, StrokeFileError> {
     row.check_length()?;
     let t_s = row.real(t)?;
-    if (row.real_if_known(x)?, row.real_if_known(y)?) == (None, None) {
-        return Ok(StrokeRow { t_s, place: None, normal_load_n: None });
-    }
-    let place = Point { x_m: row.real(x)? / MM_PER_M, y_m: row.real(y)? / MM_PER_M };
+    let (x_mm, y_mm) = match (row.real_if_known(x)?, row.real_if_known(y)?) {
+        (Some(x_mm), Some(y_mm)) => (x_mm, y_mm),
+        (None, None) => return Ok(StrokeRow { t_s, place: None, normal_load_n: None }),
+        (x_mm, _) => {
+            let (unknown, known) = if x_mm.is_none() { (X, Y) } else { (Y, X) };
+            let reason = format!(
+                "unknown, where {} is known: give both, or neither while the finger is off the screen",
+                known.name
+            );
+            return Err(refused(row.number(), unknown, reason));
+        }
+    };
+    let place = Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M };
     let normal_load_n = load.map(|load| row.real_if_known(load)).transpose()?.flatten();
     match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
-        Some(found_n) => Err(StrokeFileError::Refused(format!(
-            "row {}, column force_n: {found_n} is no load of a finger: give newtons, above 0 and at most 50, or name the \
-             column force_mn if it is in millinewtons",
-            row.number()
-        ))),
+        Some(found_n) => Err(StrokeFileError::Number {
+            row: row.number(),
+            column: LOAD.name,
+            reason: format!("{found_n} is no load of a finger: give newtons, above 0 and at most 50"),
+            if_in_file: ", or name the column force_mn if it is in millinewtons",
+        }),
         None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),
     }
+}
+
+fn refused(row: u64, column: Column, reason: String) -> StrokeFileError {
+    StrokeFileError::Number { row, column: column.name, reason, if_in_file: "" }
 }
 
 #[cfg(test)]
@@ -227,7 +251,8 @@ mod tests {
             ),
             (
                 "t_s,x_mm,y_mm\n0,,2\n1,2,3\n",
-                "row 2, column x_mm: expected a number, found an empty cell: correct the cell or delete the row",
+                "row 2, column x_mm: unknown, where y_mm is known: give both, or neither while the finger is off the \
+                 screen",
             ),
             (
                 "\r\n\r\nt_s,x_mm,y_mm\r\n0,1,2\r\n\r\n1,two,3\r\n",

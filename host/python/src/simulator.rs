@@ -85,10 +85,16 @@ impl Stroke<'_> {
     }
 }
 
-/// Refuses rows that are no stroke of a finger.
+/// Refuses rows that are no stroke of a finger. Messages name the element of an array.
 #[pyfunction]
 pub(crate) fn check_stroke(py: Python<'_>, stroke: Stroke<'_>) -> PyResult<()> {
-    stroke.of_rows().map(|_| ()).map_err(|error| parameter_error(py, error))
+    stroke.of_rows().map(|_| ()).map_err(|error| match error {
+        StrokeFileError::Number { row, column, reason, .. } => {
+            let argument = if column == "force_n" { "load_n" } else { column };
+            parameter_error(py, format!("{argument}[{}]: {reason}", row.saturating_sub(2)))
+        }
+        error => parameter_error(py, error),
+    })
 }
 
 /// Settings of a play, an object of `python/frixel/simulator.py`.

@@ -57,6 +57,14 @@ def real(name: str, value: object, expected: str = "a number") -> float:
         raise refusal(name, expected, value) from error
 
 
+def positive(name: str, value: object) -> float:
+    """A finite number above 0."""
+    found = real(name, value, "a number above 0")
+    if not (math.isfinite(found) and found > 0.0):
+        raise refusal(name, "a number above 0", value)
+    return found
+
+
 def number(name: str, value: object, least: float, most: float = math.inf) -> float:
     """A finite number from `least` to `most`."""
     expected = f"a number from {least:g} to {most:g}" if math.isfinite(most) else f"a number from {least:g}"

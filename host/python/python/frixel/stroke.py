@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from ._arguments import array, flag, real, refusal, whole
+from ._arguments import array, flag, positive, refusal, whole
 from .errors import ParameterError
 
 __all__ = ["Stroke"]
@@ -19,6 +19,9 @@ class Stroke:
 
     Places are in mm from the top left corner of the screen.
     """
+
+    def __init__(self) -> None:
+        raise ParameterError("a stroke is made by Stroke.straight, human or from_arrays: call one of these")
 
     @staticmethod
     def straight(
@@ -35,11 +38,16 @@ class Stroke:
         from_mm, to_mm
             Start and end: x and y, mm.
         speed_mm_s
-            Mean speed, mm/s.
+            Mean speed, mm/s, above 0.
         minimum_jerk
             Start and end at rest, as a hand does, rather than at constant speed.
+
+        Raises
+        ------
+        ParameterError
+            A value is not taken.
         """
-        speed = real("speed_mm_s", speed_mm_s)
+        speed = positive("speed_mm_s", speed_mm_s)
         return _Straight(_place("from_mm", from_mm), _place("to_mm", to_mm), speed, flag("minimum_jerk", minimum_jerk))
 
     @staticmethod
@@ -49,13 +57,18 @@ class Stroke:
         Parameters
         ----------
         seed
-            Seed of the person's motion.
+            Seed of the person's motion, from 0.
         seconds
-            Duration, s; without it, that of the play, or else 10 s.
+            Duration, s, above 0; without it, that of the play, or else 10 s.
         rough
             With the accelerations of recorded strokes before smoothing, 2 to 5 times as much.
+
+        Raises
+        ------
+        ParameterError
+            A value is not taken.
         """
-        lasts_s = None if seconds is None else real("seconds", seconds)
+        lasts_s = None if seconds is None else positive("seconds", seconds)
         return _Human(whole("seed", seed, 0), lasts_s, flag("rough", rough))
 
     @staticmethod
@@ -65,31 +78,37 @@ class Stroke:
         Parameters
         ----------
         t_s
-            Times from the start, s, from 0 and rising; shape (n,), at least 2.
+            Times, s, from 0 and rising; shape (n,), at least 2. The finger is off the screen until the first one; one
+            above 10 s is of another clock, and is the start.
         x_mm, y_mm
-            Places, mm, shape (n,); not a number while the finger is off the screen.
+            Places, mm, shape (n,); NaN in both while the finger is off the screen.
         load_n
-            Normal loads, N, above 0 and at most 50, shape (n,); not a number where none is known.
+            Normal loads, N, above 0 and at most 50, shape (n,); NaN where none is known.
 
         Raises
         ------
         ParameterError
-            The arrays are not of one length, times do not rise, or a load is none of a finger. Messages count rows as
-            in a CSV file, whose header is row 1, and call the load `force_n`.
+            The arrays are not of one length, times do not rise, or a place or a load is none of a finger. Messages
+            name the element.
         """
-        columns = [array(name, values) for name, values in {"t_s": t_s, "x_mm": x_mm, "y_mm": y_mm}.items()]
-        load = None if load_n is None else array("load_n", load_n)
-        shapes = {column.shape for column in [*columns, *([] if load is None else [load])]}
-        if len(shapes) > 1 or columns[0].ndim != 1:
+        given = {"t_s": t_s, "x_mm": x_mm, "y_mm": y_mm, **({} if load_n is None else {"load_n": load_n})}
+        columns = {name: array(name, values) for name, values in given.items()}
+        shapes = {column.shape for column in columns.values()}
+        if len(shapes) > 1 or columns["t_s"].ndim != 1:
             raise ParameterError(f"a stroke has arrays of one length, found shapes {sorted(shapes)}")
-        stroke = _Rows(columns[0], columns[1], columns[2], load)
+        for name, values in columns.items():
+            wrong = np.flatnonzero(np.isinf(values) | (np.isnan(values) & (name == "t_s")))
+            if wrong.size:
+                expected = "a finite number" if name == "t_s" else "a finite number or NaN"
+                raise refusal(f"{name}[{wrong[0]}]", expected, float(values[wrong[0]]))
+        stroke = _Rows(columns["t_s"], columns["x_mm"], columns["y_mm"], columns.get("load_n"))
         _frixel.check_stroke(stroke)
         return stroke
 
 
 def _place(name: str, place: tuple[float, float]) -> tuple[float, float]:
     x_and_y = array(name, place)
-    if x_and_y.shape != (2,):
+    if x_and_y.shape != (2,) or not np.isfinite(x_and_y).all():
         raise refusal(name, "x and y in mm", place)
     return float(x_and_y[0]), float(x_and_y[1])
 
