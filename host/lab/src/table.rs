@@ -44,7 +44,7 @@ pub use unit::Unit;
 use utf16::Utf8;
 
 /// Smallest similarity at which a name is suggested for another, as a fraction of their length.
-const LIKENESS: f64 = 0.6;
+const LIKENESS: f64 = 0.55;
 /// Spellings of an unknown value.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();

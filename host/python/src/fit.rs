@@ -9,6 +9,10 @@ use super::error::raised;
 use super::profile::ProfileText;
 use super::signals::interruptible;
 
+/// Options of the command that sentences name, and the arguments in their place.
+const ARGUMENTS: [(&str, &str); 3] =
+    [("--without", "`without`"), ("--voltage", "`voltage_v_rms`"), ("--load", "`normal_load_n`")];
+
 /// What to fit for, an object of `python/frixel/fitting.py`.
 #[derive(FromPyObject)]
 pub(crate) struct FitSettings {
@@ -46,5 +50,9 @@ pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> 
         let summary = serde_json::to_string(&Summary::from(&fit)).unwrap_or_default();
         Ok((summary, with_note(fit::words(&fit, &screen)), fit::profile(&fit, experiment).to_toml()))
     })?;
-    fitted.map_err(|error: FitError| raised(py, "FitError", (error.to_string(),)))
+    fitted.map_err(|error: FitError| {
+        let in_command = error.to_string();
+        let sentence = ARGUMENTS.iter().fold(in_command, |text, (option, argument)| text.replace(option, argument));
+        raised(py, "FitError", (sentence,))
+    })
 }

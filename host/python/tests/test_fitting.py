@@ -57,6 +57,16 @@ def test_data_that_give_no_finger_are_refused() -> None:
         fit({**data, "voltage_v_rms": np.zeros(4800)})
     with pytest.raises(FitError, match="the header has no column friction_n: name the column so, in newtons"):
         fit({name: data[name] for name in ("voltage_v_rms", "normal_force_n")})
+    with pytest.raises(FitError, match=r"no column normal_force_n \(it has normal_n\): name the column so, in newtons"):
+        fit({"voltage_v_rms": data["voltage_v_rms"], "friction_n": data["friction_n"], "normal_n": data["friction_n"]})
+    with pytest.raises(FitError, match="state it lower with `voltage_v_rms` 75"):
+        fit({**data, "voltage_v_rms": data["voltage_v_rms"] / 2})
+    with pytest.raises(FitError, match="or leave out `normal_load_n`"):
+        fit(data, normal_load_n=50)
+    with pytest.raises(FitError, match="`without` nowhere: there is no such stroke"):
+        fit(data, without=["nowhere"])
+    with pytest.raises(FitError, match="the data have no columns"):
+        fit({})
     with pytest.raises(ParameterError, match="columns have one length, found"):
         fit({**data, "friction_n": data["friction_n"][1:]})
     with pytest.raises(ParameterError, match="found 'power'"):

@@ -154,7 +154,7 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
     ("fields", "sentence"),
     [
         ({"people": 0}, "people is 0: give a number from 1 to 100000"),
-        ({"peple": 3}, "unknown field `peple`"),
+        ({"peple": 3}, "<plan>: the plan has no field `peple`: did you mean `people`"),
         ({"scenes": ["nowhere.toml"]}, "the scene nowhere.toml cannot be read"),
         ({"scenes": {}}, "give the name of one scene file or more"),
         ({"scenes": "grating.toml"}, "a list of files, or a dictionary of scenes by their names, found 'grating.toml'"),
@@ -168,7 +168,11 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
         ),
         ({"scenes": {"a": "grating.toml"}}, r"Scene\.load reads a file, found 'grating.toml'"),
         ({"touch": ["50"]}, "give its file, from the plan's folder, or a bundled one"),
-        ({"parameters": {"layer.2.high_n": [1]}}, "layer.2"),
+        ({"parameters": {"layer.2.high_n": [1]}}, "has no layer 2, but 1 layer: write layer.1"),
+        (
+            {"parameters": {"layer.1.high_n": 0.1}},
+            r'<plan>: parameter "layer\.1\.high_n": give a list of values, or \{ from, to, count \}',
+        ),
     ],
 )
 def test_a_plan_with_a_mistake_is_refused(fields: dict[str, Any], sentence: str) -> None:

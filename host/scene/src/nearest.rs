@@ -15,9 +15,9 @@ pub struct Nearest {
     remark: &'static str,
 }
 
-/// Common words for terms of a scene, each with a remark. If a word occurs several times, the first entry whose term is
-/// valid in the context counts.
-const SYNONYMS: [(&str, &str, &str); 34] = [
+/// Common words for terms of a scene or a plan, each with a remark. If a word occurs several times, the first entry
+/// whose term is valid in the context counts.
+const SYNONYMS: [(&str, &str, &str); 35] = [
     ("file", "picture", ""),
     ("image", "picture", ""),
     ("photo", "picture", ""),
@@ -52,6 +52,7 @@ const SYNONYMS: [(&str, &str, &str); 34] = [
     ("sound", "vibration", ", which is felt and not heard"),
     ("text", "bitmap", ", with a picture of the text"),
     ("icon", "bitmap", ", with a picture of the icon"),
+    ("persons", "people", ""),
 ];
 
 /// Words for unsupported kinds of layer, each with a replacement. They apply where [`A_KIND`] is valid.
@@ -80,8 +81,11 @@ impl Nearest {
         if let Some((_, remark)) = NO_KINDS.iter().find(|(word, _)| *word == found && is_known(A_KIND)) {
             return Self { suggestion: None, known, remark };
         }
+        // A number is not nearer to another because they share digits.
+        let are_numbers = known.iter().all(|word| word.parse::<f64>().is_ok());
         let suggestion = known
             .iter()
+            .filter(|_| !are_numbers)
             .rev()
             .map(|word| (likeness(&found, &word.to_lowercase()), word))
             .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)

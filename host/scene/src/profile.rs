@@ -60,6 +60,7 @@ pub enum ProfileError {
 fn advice(nearest: &Nearest) -> String {
     match &nearest.suggestion {
         Some(suggestion) => format!("did you mean `{suggestion}`?"),
+        None if nearest.known.len() == 1 => format!("the bundled one is {}", nearest.known.join("")),
         None => format!("the bundled ones are {}", nearest.known.join(", ")),
     }
 }

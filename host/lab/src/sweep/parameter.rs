@@ -73,7 +73,14 @@ pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> 
                  \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
                 brief(part)
             ),
-            Misplaced::Layer(found, layers) => format!("{scene} has no layer {}: it has {layers}", brief(found)),
+            Misplaced::Layer(found, count) => {
+                let layers = match count {
+                    0 => "no layers".to_owned(),
+                    1 => "1 layer: write layer.1".to_owned(),
+                    _ => format!("{count} layers: write layer.1 to layer.{count}"),
+                };
+                format!("{scene} has no layer {}, but {layers}", brief(found))
+            }
         };
         PlanError(format!("parameter \"{}\": {reason}", brief(path)))
     })?;

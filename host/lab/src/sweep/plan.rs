@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{NamedProfile, Profile, Screen, brief, check_toml};
+use frixel_scene::{NamedProfile, Nearest, Profile, Screen, brief, check_toml};
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -65,6 +65,41 @@ pub struct Plan {
     pub parameters: BTreeMap<String, Values>,
 }
 
+/// The fields of a plan: first those that it cannot do without.
+const FIELDS: [&str; 11] = [
+    "scenes",
+    "people",
+    "screens",
+    "touch",
+    "stroke",
+    "strokes",
+    "seeds",
+    "seconds",
+    "median_speed_mm_per_s",
+    "ideal",
+    "parameters",
+];
+/// How many of them these are.
+const NEEDED: usize = 2;
+
+/// Refuses a plan with an unknown field, without a needed one, or with values that are neither a list nor a range.
+fn check_names(plan: &toml::Table, name: &str) -> Result<(), PlanError> {
+    if let Some(unknown) = plan.keys().find(|key| !FIELDS.contains(&key.as_str())) {
+        let nearest = Nearest::new(unknown, FIELDS);
+        return Err(PlanError(format!("{name}: the plan has no field `{}`: {nearest}", brief(unknown))));
+    }
+    if let Some(needed) = FIELDS.iter().take(NEEDED).find(|needed| !plan.contains_key(**needed)) {
+        return Err(PlanError(format!("{name}: the plan lacks `{needed}`")));
+    }
+    let parameters = plan.get("parameters").and_then(toml::Value::as_table);
+    for (path, values) in parameters.into_iter().flatten() {
+        if let Err(error) = Values::deserialize(values.clone()) {
+            return Err(PlanError(format!("{name}: parameter \"{}\": {}", brief(path), error.message())));
+        }
+    }
+    Ok(())
+}
+
 /// The profiles that a plan names. A bundled one needs no file; `text` reads the files of the others.
 fn named<P: Profile, E>(
     names: &[String],
@@ -95,7 +130,7 @@ fn seconds() -> f64 {
 
 /// The values of a field.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "give a list of values, or { from, to, count }")]
 pub enum Values {
     /// These values.
     List(Vec<Value>),
@@ -145,6 +180,8 @@ impl Plan {
         let brief_lines = |reason: &str| reason.trim_end().lines().map(brief).collect::<Vec<_>>().join("\n");
         let not_a_plan = |error: toml::de::Error| PlanError(format!("{name}: {}", brief_lines(&error.to_string())));
         check_toml(text).map_err(|(_, mistake)| PlanError(format!("{name}: {mistake}")))?;
+        let table: toml::Table = toml::from_str(text).map_err(not_a_plan)?;
+        check_names(&table, name)?;
         let plan: Self = toml::from_str(text).map_err(not_a_plan)?;
         plan.check(name)?;
         Ok(plan)
@@ -294,7 +331,7 @@ mod tests {
             (format!("[parameters]\n{} = [1]\n", path(1_000_000)), "parts of a name, and at most 64 are read"),
             (format!("[parameters]\na = {}\n", "[".repeat(100_000)), "parts of a name, and at most 64 are read"),
             (format!("#{}\n", "#".repeat(5 << 20)), "bytes in this text, and at most 4194304 are read"),
-            (format!("{} = 1\n", "a".repeat(100_000)), "unknown field"),
+            (format!("{} = 1\n", "a".repeat(100_000)), "the plan has no field"),
         ] {
             let error = plan(&rest).unwrap_err().to_string();
             assert!(error.contains(says) && error.len() < 1_000, "{says}: {error}");

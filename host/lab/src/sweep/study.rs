@@ -74,7 +74,11 @@ impl Study {
     pub fn summary(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for group in &self.groups {
-            lines.push(format!("  {}, {} simulated fingers", group.title(), group.fingers.len()));
+            let fingers = match group.fingers.len() {
+                1 => "1 simulated finger".to_owned(),
+                count => format!("{count} simulated fingers"),
+            };
+            lines.push(format!("  {}, {fingers}", group.title()));
             for LayerShare { layer, simulated_fingers, interval: [low, high], .. } in group.layer_rows() {
                 let Verdicts { touched, felt, felt_by_some, .. } = simulated_fingers;
                 let maybe = if felt_by_some > 0 { format!(", maybe by {felt_by_some}") } else { String::new() };

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from . import _frixel
 from ._arguments import each, real, refusal, whole
 from ._arguments import text as checked_text
-from .errors import ParameterError
+from .errors import FitError, ParameterError
 from .profiles import Finger, Screen
 
 __all__ = ["Fit", "fit"]
@@ -138,6 +138,8 @@ def _csv(data: Mapping[str, ArrayLike]) -> str:
     shapes = {values.shape for values in columns.values()}
     if len(shapes) > 1 or any(len(shape) != 1 for shape in shapes):
         raise ParameterError(f"data: columns have one length, found shapes {sorted(shapes)}")
+    if not columns:
+        raise FitError("the data have no columns: give voltage_v_rms, normal_force_n and friction_n")
     text = io.StringIO()
     # In quotes, a word is neither a comment nor a separator.
     writer = csv.writer(text, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
