@@ -12,7 +12,10 @@ use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, TouchConfig};
 use frixel_lab::input::{is_same_name, read_named};
 use frixel_play::{board_costs, judge, judged_rig};
-use frixel_scene::{CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft};
+use frixel_scene::{
+    CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft, is_picture,
+    picture_sentence,
+};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -72,6 +75,9 @@ impl Scene {
     ) -> PyResult<Self> {
         let screen = screen.map(|screen| Ok::<_, PyErr>((screen.read(py)?, screen))).transpose()?;
         let finger = finger.map(|finger| Ok::<_, PyErr>((finger.read(py)?, finger))).transpose()?;
+        if is_picture(&text) {
+            return Err(raised(py, "SceneError", (picture_sentence(&name),)));
+        }
         let read = py.detach(|| {
             let files = ReadFiles::new(folder, files);
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;

@@ -81,5 +81,5 @@ pub(crate) fn score_scene(
         error => parameter_error(py, error),
     })?;
     let score = scored.map_err(|error| failed(error.to_string()))?;
-    Ok((score.to_json(), score.summary(true), score.to_csv(), score.layers_csv()))
+    Ok((score.to_json(), score.summary(false), score.to_csv(), score.layers_csv()))
 }

@@ -249,8 +249,9 @@ def test_every_public_function_refuses_wrong_values_by_a_frixel_error(
         ),
         (
             lambda: frixel.run({"scene": PLATE, "sed": 1}),
-            "a cell has `scene` and `seconds`, and of Simulator's arguments some, found ['scene', 'sed']",
+            "a cell has no 'sed': its keys are Simulator's arguments and `seconds`",
         ),
+        (lambda: frixel.run({"seconds": 0.1}), "a cell lacks `scene`: give a Scene or its tables"),
         (lambda: Scene.load("x" * 100 + "\0"), "path is a path, found '" + "x" * 62 + "…"),
     ],
 )

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from frixel import Device, ParameterError, PlayError, SceneError, Telemetry
+from frixel import Device, FrixelWarning, ParameterError, PlayError, SceneError, Telemetry
 
 from .conftest import REPOSITORY
 
@@ -192,6 +192,14 @@ def test_a_port_that_does_not_exist() -> None:
         Device.open("/dev/nowhere")
     with pytest.raises(ParameterError, match='a path or "sim"'):
         Device.open(3)  # type: ignore[arg-type]
+
+
+def test_a_draft_is_told() -> None:
+    draft = {"layer": [{"kind": "constant", "friction_n": 3}]}
+    with Device.open("sim") as device:
+        for play in (device.play, device.replace, lambda scene: device.record(scene, 0.1)):
+            with pytest.warns(FrixelWarning, match="played as a draft, clamped: .*3"):
+                play(draft)
 
 
 def test_a_closed_device_says_so() -> None:

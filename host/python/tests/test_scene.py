@@ -51,6 +51,9 @@ def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
         Scene.load("/dev/zero")
     with pytest.raises(SceneError, match="this scene file cannot be read"):
         Scene.load(tmp_path)
+    (tmp_path / "brick.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    with pytest.raises(SceneError, match=r"brick\.png: this is a picture, not a scene file; .* --picture .*\.png$"):
+        Scene.load(tmp_path / "brick.png")
     (tmp_path / "picture.toml").write_text('version = 1\n[[layer]]\nkind = "picture"\nfile = "brik.png"\n')
     with pytest.raises(SceneError):
         Scene.load(tmp_path / "picture.toml")

@@ -133,8 +133,10 @@ def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
 
 
 def test_an_answer_that_is_none_is_refused(tmp_path: Path) -> None:
-    with opened(tmp_path) as session, pytest.raises(ExperimentError, match="an answer is 0 or 1, and this one is 2"):
-        session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 2)
+    for answer in (2, True, np.bool_(False)):
+        said = re.escape(f"an answer is 0 or 1, and this one is {answer!r}")
+        with opened(tmp_path) as session, pytest.raises(ExperimentError, match=said):
+            session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial, answer=answer: answer)  # type: ignore[misc]
     assert not (tmp_path / "trials.jsonl").exists()
 
 

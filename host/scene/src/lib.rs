@@ -99,7 +99,7 @@ pub use live_change::{Clamped, LayerSetting};
 pub use mistake::{FieldMistake, FileMistake, FitMistake, Mistake, TILDE_ADVICE};
 pub use nearest::Nearest;
 pub use optimisation::Optimisation;
-pub use picture::{check_picture, is_picture};
+pub use picture::{check_picture, is_picture, picture_sentence};
 pub use played_finger::PlayedFinger;
 pub use printable::{NAME_MAX_CHARS, Shown, brief, is_printable, printable, printable_lines};
 pub use profile::{NamedProfile, Profile, ProfileError};

@@ -14,7 +14,7 @@ use frixel_lab::input::{check_path, is_same_name};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
     CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE,
-    compile, is_picture,
+    compile, is_picture, picture_sentence,
 };
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
@@ -42,7 +42,7 @@ pub enum SceneFileError {
         source: io::Error,
     },
     /// The scene file is a picture.
-    #[error("{file}: this is a picture, not a scene file; make a scene of it: frixel new NAME --picture {file}")]
+    #[error("{}", picture_sentence(file))]
     Picture {
         /// Path of the picture, as the caller gave it.
         file: String,

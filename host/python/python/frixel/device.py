@@ -31,6 +31,9 @@ TELEMETRY_PER_S_MAX = 1000
 WAIT_MAX_S = 1e9
 """Longest wait, s."""
 
+SIMULATED = "sim"
+"""The port of the simulated board, which plays a draft of what a board refuses."""
+
 STEP_S = 0.05
 """Longest time between two looks at an interrupt."""
 
@@ -144,8 +147,16 @@ class Device:
             The scene has mistakes, or this board cannot play it.
         PlayError
             The board refuses, for example because its arm switch is not held, or is gone.
+
+        Warns
+        -----
+        FrixelWarning
+            The simulated board plays a draft of the scene, clamped.
         """
-        self._take(self._device.play(Scene.of(scene).compiled))
+        scene = Scene.of(scene)
+        if self._port == SIMULATED:
+            scene._warn_of_draft()
+        self._take(self._device.play(scene.compiled))
 
     def replace(self, scene: Scene | Mapping[str, Any]) -> list[str]:
         """Play another scene from the next tick on, without a break.
@@ -164,8 +175,16 @@ class Device:
             The scene has mistakes, or this board cannot play it.
         PlayError
             The board refuses, has stopped, or is gone.
+
+        Warns
+        -----
+        FrixelWarning
+            As `play`.
         """
-        return self._take(self._device.replace(Scene.of(scene).compiled))
+        scene = Scene.of(scene)
+        if self._port == SIMULATED:
+            scene._warn_of_draft()
+        return self._take(self._device.replace(scene.compiled))
 
     def set_layer(self, layer: str | int, *, on: bool | None = None, gain: float | None = None) -> list[str]:
         """Switch a layer on or off, or set the factor on its friction; what is not given stays.
@@ -339,6 +358,11 @@ class Device:
             A value is not taken. Nothing is played.
         SceneError, PlayError, KeyboardInterrupt
             As `play` and `telemetry`. The board is disarmed.
+
+        Warns
+        -----
+        FrixelWarning
+            As `play`.
         """
         scene = Scene.of(scene)
         seconds = number("seconds", seconds, 1e-3, DAY_S)

@@ -32,7 +32,7 @@ __all__ = ["Contact", "SoftContact", "States", "eval", "invert"]
 
 @dataclass(frozen=True)
 class Contact:
-    """A paraboloid finger on springs of one stiffness, Eqs. (1), (10), on a coating.
+    """A paraboloid finger on springs of one stiffness, Eqs. (1), (10) of Argatov and Borodich, on a coating.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class SoftContact:
-    """A finger of a soft material, Eqs. (22) to (29), on a coating.
+    """A finger of a soft material, Eqs. (22) to (29) of Argatov and Borodich, on a coating.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ class States(NamedTuple):
 
 
 def eval(contact: Contact | SoftContact, voltage_v_rms: ArrayLike, normal_load_n: ArrayLike = 0.0) -> States:  # noqa: A001
-    """The contact at each voltage, Eqs. (36), (43).
+    """The contact at each voltage, Eqs. (36), (43) of Argatov and Borodich.
 
     Parameters
     ----------

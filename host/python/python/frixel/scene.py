@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
 from html import escape
 from os import PathLike
@@ -17,7 +18,7 @@ from ._arguments import flag, mapping, number, refusal, whole
 from ._arguments import path as checked_path
 from ._arguments import text as checked_text
 from ._files import name_of, read_bytes
-from .errors import SceneError
+from .errors import FrixelWarning, SceneError
 from .profiles import Finger, Screen, TouchSource
 
 __all__ = ["Scene"]
@@ -101,11 +102,25 @@ class Scene:
         return scene
 
     def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:
-        """The scene for another finger: one, the name of a bundled one, or the fields of its file."""
+        """The scene for another finger: one, the name of a bundled one, or the fields of its file.
+
+        Raises
+        ------
+        SceneError
+            Its fields have mistakes, or the scene has mistakes for it.
+        ParameterError
+            No bundled one has this name.
+        """
         return self._for(Finger.of(finger), self._screen)
 
     def with_screen(self, screen: Screen | str | Mapping[str, Any]) -> Scene:
-        """The scene on another screen: one, the name of a bundled one, or the fields of its file."""
+        """The scene on another screen: one, the name of a bundled one, or the fields of its file.
+
+        Raises
+        ------
+        SceneError, ParameterError
+            As `with_finger`.
+        """
         return self._for(self._finger, Screen.of(screen))
 
     def _for(self, finger: Finger | None, screen: Screen | None) -> Scene:
@@ -141,6 +156,12 @@ class Scene:
         """Why a board refuses the scene, a sentence each. The simulator plays it as a draft, clamped."""
         return self.compiled.refusals
 
+    def _warn_of_draft(self) -> None:
+        """Say that the simulated board plays the scene as a draft, if a board refuses it."""
+        if self.refusals:
+            message = f"a board refuses {self.name}, which is played as a draft, clamped: {'; '.join(self.refusals)}"
+            warnings.warn(message, FrixelWarning, stacklevel=3)
+
     @property
     def notes(self) -> list[str]:
         """Reasons to doubt the scene, and what was rounded or clamped, a sentence each."""
@@ -172,15 +193,20 @@ class Scene:
         Parameters
         ----------
         width, height
-            Largest size in pixels; the map has the proportions of the screen.
+            Largest size in pixels, from 1 to 10,000; the map has the proportions of the screen.
         speed_mm_s
-            Sliding speed of the finger, mm/s, for layers that depend on it.
+            Sliding speed of the finger, from 0 to 10,000 mm/s, for layers that depend on it.
 
         Returns
         -------
         numpy.ndarray
             Electric friction at the middle of each pixel, N, of shape (rows, columns), from the top left. Vibrations
             and streams are at their largest.
+
+        Raises
+        ------
+        ParameterError
+            A value is not taken.
         """
         return self.compiled.map(
             whole("width", width, 1, MAP_MAX_PX),

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import inspect
-import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from . import _frixel
-from ._arguments import flag, mapping, real, refusal, whole
-from .errors import FrixelWarning, ParameterError
+from ._arguments import flag, mapping, real, refusal, shown, whole
+from .errors import ParameterError
 from .profiles import Finger, Screen, TouchSource
 from .recording import TICKS_PER_S, Recording
 from .scene import Scene
@@ -51,6 +50,8 @@ class Simulator:
     ------
     SceneError
         The scene, the finger, the screen or the touch source has mistakes.
+    ParameterError
+        A value is not taken, or no bundled profile has this name.
     """
 
     def __init__(
@@ -111,10 +112,7 @@ class Simulator:
         """
         seconds = None if seconds is None else real("seconds", seconds)
         columns, made = _frixel.simulate(self.scene.compiled, self, seconds)
-        refusals = self.scene.refusals
-        if refusals:
-            message = f"a board refuses {self.scene.name}, which is played as a draft, clamped: {'; '.join(refusals)}"
-            warnings.warn(message, FrixelWarning, stacklevel=2)
+        self.scene._warn_of_draft()
         settings = {
             "frixel": _frixel.__version__,
             "scene": self.scene.name,
@@ -142,10 +140,11 @@ def run(cell: Mapping[str, Any]) -> Recording:
     """
     arguments = dict(mapping("cell", cell))
     seconds = arguments.pop("seconds", None)
-    if "scene" not in arguments or not arguments.keys() <= _ARGUMENTS:
-        raise ParameterError(
-            f"a cell has `scene` and `seconds`, and of Simulator's arguments some, found {[*arguments]}"
-        )
+    unknown = [shown(name) for name in arguments if name not in _ARGUMENTS]
+    if unknown:
+        raise ParameterError(f"a cell has no {unknown[0]}: its keys are Simulator's arguments and `seconds`")
+    if "scene" not in arguments:
+        raise ParameterError("a cell lacks `scene`: give a Scene or its tables")
     return Simulator(**arguments).run(seconds)
 
 

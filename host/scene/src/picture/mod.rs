@@ -72,6 +72,11 @@ pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
     Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
+/// What to say of a picture that was given as a scene `file`: a sentence.
+pub fn picture_sentence(file: &str) -> String {
+    format!("{file}: this is a picture, not a scene file; make a scene of it: frixel new NAME --picture {file}")
+}
+
 /// Whether bytes begin as a PNG or JPEG file does.
 pub fn is_picture(bytes: &[u8]) -> bool {
     bytes.starts_with(from_png::SIGNATURE) || bytes.starts_with(from_jpeg::SIGNATURE)

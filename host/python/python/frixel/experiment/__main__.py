@@ -1,9 +1,8 @@
-"""Find what a person just feels, without a force sensor: ``python -m frixel.experiment FOLDER --port PATH``.
+"""Find what a person just feels, without a force sensor: python -m frixel.experiment FOLDER --port PATH.
 
 In each trial a finger makes two strokes, of which one is rough, and the person types which. The folder keeps every
-answer (:class:`frixel.experiment.Session`): the same command goes on with a session that was cut off. At the end,
-``finger.toml`` in it is the finger's profile, with the threshold in volts. Nobody knows how many newtons that is: write
-scenes in fractions of what can be reached.
+answer: the same command goes on with a session that was cut off. At the end, finger.toml in it is the finger's profile,
+with the threshold in volts. Nobody knows how many newtons that is: write scenes in fractions of what can be reached.
 """
 
 from __future__ import annotations
@@ -53,7 +52,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--observer", type=int, metavar="SEED", help="let a simulated observer answer, without a board")
     made.add_argument("--participant", default="person", metavar="CODE", help="a code of the person, not a name")
     made.add_argument("--method", choices=["quest", "up-down"], default="quest", help="how levels are chosen")
-    made.add_argument("--trials", type=int, default=40, metavar="N", help="12 to 200 trials, then up to 30 checks")
+    made.add_argument(
+        "--trials", type=int, default=40, metavar="N", help="12 to 200, then up to 30 checks; %(default)s by default"
+    )
     made.add_argument("--voltage", type=float, default=150.0, metavar="V_RMS", help="highest voltage, at most 150")
     made.add_argument("--screen", default="example", help="name of the screen under the finger, for the profile")
     made.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the order of the strokes")

@@ -85,20 +85,30 @@ class Answers:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What answers say of a person."""
+    """What answers say of a person: a threshold in the unit of the levels, if they are plainly better than guessing.
+
+    Attributes
+    ----------
+    threshold
+        Level at which the person, without lapses, is 1 - 1/e of the way from guessing to always right: median of the
+        posterior. ``None`` for answers that are no better than guessing.
+    interval
+        95 % interval of the threshold: it holds 95 % of the posterior, and each side beyond it 2.5 %.
+    evidence
+        How many times as likely the answers are of somebody who notices, averaged over the grid, as of a guesser;
+        below 1000 there is no threshold.
+    trials
+        Number of trials.
+    is_bounded
+        Whether the interval lies within the levels that were presented. Where it does not, it rests on the shape of the
+        psychometric function, and more extreme levels are needed.
+    """
 
     threshold: float | None
-    """Level at which the person, without lapses, is 1 - 1/e of the way from guessing to always right: median of the
-    posterior. ``None`` for answers that are no better than guessing."""
     interval: tuple[float, float] | None
-    """95 % interval of the threshold: it holds 95 % of the posterior, and each side beyond it 2.5 %."""
     evidence: float
-    """How many times as likely the answers are of somebody who notices, averaged over the grid, as of a guesser."""
     trials: int
-    """Number of trials."""
     is_bounded: bool
-    """Whether the interval lies within the levels that were presented. Where it does not, it rests on the shape of the
-    psychometric function, and more extreme levels are needed."""
 
     def __str__(self) -> str:
         if self.threshold is None or self.interval is None:

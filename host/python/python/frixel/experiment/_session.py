@@ -304,10 +304,12 @@ class Session:
             self._mark("presented")
             response = answer(trial)
             answered_s = self._now_s()
-            if response not in (0, 1):
+            is_same_different = self._task.name == "same-different"
+            # Of two alternatives, `True` is mostly meant as "correct".
+            if response not in (0, 1) or (isinstance(response, (bool, np.bool_)) and not is_same_different):
                 raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
             times = {"played_s": played_s, "presented_s": presented_s, "answered_s": answered_s}
-            correct = bool(response == (1 if self._task.name == "same-different" else target))
+            correct = bool(response == (1 if is_same_different else target))
             answered = {"response": int(response), "correct": correct, "run": self._run, "plays": self._kept_plays()}
             self._folder.append({**asdict(trial), **answered, **times})
             self._mark("answered")
