@@ -194,7 +194,7 @@ fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
     assert!(cut > 0);
 }
 
-/// Whoever opens a scene reads in one breath what it is; the rest stands below the layers.
+/// The first comment of a scene is one plain sentence; the rest stands below the layers.
 #[test]
 fn every_scene_begins_with_one_plain_sentence_of_at_most_100_characters() {
     for entry in gallery() {

@@ -49,7 +49,7 @@ pub enum StrokeFileError {
         /// What may help besides where the numbers are those of a file.
         if_in_file: &'static str,
     },
-        /// The rows do not describe a stroke of a finger.
+    /// The rows do not describe a stroke of a finger.
     #[error("{0}")]
     Refused(String),
     /// The finger cannot go through the places.

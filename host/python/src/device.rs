@@ -34,8 +34,8 @@ type Answer = (&'static str, f64, bool, Vec<String>, Vec<Message>);
 /// Tick, state, flags, x and y in m, speed in m/s, electric friction that is asked for in N, and voltage in V rms.
 type Message = (u32, &'static str, Vec<&'static str>, f32, f32, f32, f32, f32);
 
-/// A board in a thread of its own, which does nothing but what is asked of it, so that the board is pinged only while
-/// the program calls.
+/// A board in a thread of its own. The thread acts only on requests, so that the board is pinged only while the program
+/// calls.
 #[pyclass(frozen, module = "frixel._frixel")]
 pub(crate) struct Device {
     port: String,
@@ -67,7 +67,7 @@ impl Line {
         Ok((Self { requests, replies, interrupted, thread }, hello))
     }
 
-    /// Asks for something. On a signal, such as that of Ctrl-C, the board is disarmed.
+    /// Sends a request, and waits for its report. On a signal, such as that of Ctrl-C, the board is disarmed.
     fn ask(&self, request: Request) -> Result<Report, Trouble> {
         let ended = || Trouble::Play(ENDED.into());
         self.requests.send(request).map_err(|_| ended())?;
@@ -84,7 +84,7 @@ impl Line {
             }
         };
         let Some(signal) = signal else { return reply };
-        // The signal is what the program is told of; a board that the commands do not reach stops by its host timeout.
+        // The signal is reported to the program; a board that the commands do not reach stops by its host timeout.
         if self.requests.send(Request::Stop).is_ok() {
             let _ = self.replies.recv();
         }
@@ -187,7 +187,7 @@ impl Device {
         )
     }
 
-    /// Takes in what the board has sent.
+    /// Handles the messages that the board has sent.
     fn look(&self, py: Python<'_>) -> PyResult<Answer> {
         self.ask(py, Request::Look)
     }

@@ -10,12 +10,12 @@ use pyo3::types::PyList;
 /// The module that has the exceptions.
 const MODULE: &str = "frixel.errors";
 
-/// A value that is not taken.
+/// The exception for a rejected value.
 pub(crate) fn parameter_error(py: Python<'_>, error: impl Display) -> PyErr {
     raised(py, "ParameterError", (error.to_string(),))
 }
 
-/// A parameter of the contact model that is not taken.
+/// The exception for a rejected parameter of the contact model.
 pub(crate) fn model_error(error: ParameterError) -> PyErr {
     Python::attach(|py| parameter_error(py, error))
 }

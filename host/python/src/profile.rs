@@ -24,7 +24,7 @@ impl ProfileText {
         self.text.as_deref()
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use frixel_play::{GoesOn, break_if};
 use pyo3::prelude::*;
 
-/// Time between two looks at Python's signals.
+/// Interval between checks of Python's signals.
 pub(crate) const SIGNALS_PERIOD: Duration = Duration::from_millis(50);
 
 /// The exception of a signal that has come, such as that of Ctrl-C.

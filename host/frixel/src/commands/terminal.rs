@@ -55,7 +55,7 @@ pub(super) fn note_interrupted(file: &Path, bytes: &[u8]) {
     }
 }
 
-/// Says on standard error why a board refuses a draft. Says nothing of other programs.
+/// Prints on standard error why a board refuses a draft; nothing for other programs.
 pub(super) fn note_refusals(scene: &Path, program: &Program) {
     if program.is_draft() {
         note(format_args!("draft: a board refuses {}:", scene.display()));

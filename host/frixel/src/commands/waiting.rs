@@ -1,4 +1,4 @@
-//! What a command waits for, when a board takes long to answer.
+//! Messages about a board that takes long to answer.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use frixel_play::break_if;
 use super::interrupt::Interrupt;
 use super::terminal::note;
 
-/// A board that is in order answers within milliseconds: after this time the command says what it waits for.
+/// Delay after which the command says what it waits for. A board that is in order answers within milliseconds.
 const SAID_AFTER: Duration = Duration::from_secs(2);
 
 /// Says on standard error what a long call to `device` waits for, and breaks it off once the command is to end.

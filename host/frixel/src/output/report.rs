@@ -46,10 +46,9 @@ pub(crate) struct Report {
     pub inversion_error_max_n: Option<f64>,
     /// Ticks in which the envelope was at its slew limit, which have no inversion error.
     pub slewing_ticks: Option<u64>,
-    /// Friction that is there because the finger presses with another load than the profile's: root mean square, N. The
-    /// reference has it too.
+    /// Friction caused by a normal load other than the profile's: root mean square, N. The reference has it too.
     pub load_mismatch_rms_n: Option<f64>,
-    /// Friction that is there because the finger presses with another load than the profile's: largest magnitude, N.
+    /// Friction caused by a normal load other than the profile's: largest magnitude, N.
     pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,

@@ -22,10 +22,10 @@ const LATENESS_TICKS: u64 = 800;
 /// An emulated board with a host's end of its serial port, on a clock that follows the board's ticks.
 ///
 /// The clock stands still while bytes are on their way to the board, because the speed at which the emulator transfers
-/// them depends on the load of the machine. The board's own clock stands still while this host has not answered for its
-/// slice of time: sent the pings that are due in it, and seen all that it has sent arrive. Without that, a busy machine
-/// would let the board run into the host timeout while the host does not run. A rig that is dropped lets the board run
-/// on, and the host timeout acts; so does a host that hangs for 10 s.
+/// them depends on the load of the machine. The board's own clock stands still until this host has completed the
+/// current slice of time: sent the pings that are due in it, and confirmed that everything sent has arrived. Otherwise
+/// the board would run into the host timeout whenever a busy machine does not run the host. If the rig is dropped, or
+/// the host hangs for 10 s, the board runs on, and the host timeout acts.
 pub struct EmulatedRig<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,

@@ -60,7 +60,7 @@ impl SceneFiles {
         once(&mut self.scene).chain(&mut self.named).any(SavedFile::is_saved)
     }
 
-    /// Whether the scene's own file is gone, once after it was there. Only [`Self::is_saved`] checks for it.
+    /// Whether the scene's own file has vanished, reported once. Only [`Self::is_saved`] checks for it.
     pub(crate) fn has_vanished(&mut self) -> bool {
         self.scene.has_vanished()
     }

@@ -127,7 +127,7 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
     input::read(path, input::TOML_MAX_BYTES).map_err(|source| SceneFileError::Unreadable { file, source })
 }
 
-/// Reads a scene file with the bytes of the files that it names, for whoever plays it without them. Results call it
+/// Reads a scene file with the bytes of the files that it names, for a play without these files. Results call it
 /// `name`.
 pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
     let file = path.display().to_string();

@@ -61,7 +61,7 @@ impl SavedFile {
         &self.path
     }
 
-    /// Whether the file is gone, once after it was there.
+    /// Whether the file has vanished, reported once.
     pub(super) fn has_vanished(&mut self) -> bool {
         let has_vanished = self.missed == CHECKS_GONE;
         // Reported only once, although there may be several calls between two checks.

@@ -40,14 +40,14 @@ STEP_S = 0.05
 
 @dataclass(frozen=True)
 class Telemetry:
-    """What a board says of one tick."""
+    """A board's report on one tick."""
 
     t_s: float
     """Time since power-on, s; it begins anew after 2^32 ticks."""
     state: str
     """`disarmed`, `armed`, `active` or `faulted`."""
     flags: tuple[str, ...]
-    """What limits the output, and how the finger is, a word each (`docs/design/outputs.md`)."""
+    """Limits of the output and state of the finger, a word each (`docs/design/outputs.md`)."""
     x_mm: float
     """Estimated place of the finger, from the left edge of the screen."""
     y_mm: float
@@ -61,14 +61,14 @@ class Telemetry:
 
 
 class Device:
-    """A board, connected. Use it in a `with` block: however the block is left, the board is disarmed and let go of.
+    """A connected board. Use it in a `with` block, which always disarms and releases the board.
 
-    **A board plays only while the program calls.** The library pings the board for one second after each call; then the
-    board hears nothing, sets its output to zero, and the next call is a `PlayError`. So an idle notebook, a program
-    that hangs and a breakpoint lose the board. A program with nothing to say calls `wait`.
+    **A board plays only while the program calls.** The library pings the board for one second after each call. Then the
+    board sets its output to zero, and the next call raises `PlayError`. An idle notebook, a program that hangs or a
+    breakpoint therefore loses the board. A program with nothing else to do calls `wait`.
 
-    The time of `"sim"`, the simulated board, passes only in `wait` and `telemetry`, and faster than on the wall: what
-    happens on it is the same each time.
+    The time of `"sim"`, the simulated board, passes only in `wait` and `telemetry`, and faster than real time. Its
+    plays are reproducible.
     """
 
     def __init__(self, device: _frixel.Device, port: str) -> None:
@@ -124,7 +124,7 @@ class Device:
                 raise
 
     def close(self) -> None:
-        """Disarm the board and let go of its port. Does nothing on a closed device.
+        """Disarm the board and release its port. Does nothing on a closed device.
 
         Raises
         ------
@@ -289,7 +289,7 @@ class Device:
                 self._take(self._device.listen(self._step_s(until_s)))
 
     def telemetry(self, seconds: float | None = None, *, messages_per_s: int = 100) -> Iterator[Telemetry]:
-        """What the board says of itself while time passes on it: an iterator, which may be left at any time.
+        """Iterate over the board's telemetry while time passes on it. The iterator may be left at any time.
 
         Parameters
         ----------
@@ -333,7 +333,7 @@ class Device:
         messages_per_s: int = 100,
         on_active: Callable[[], object] | None = None,
     ) -> Recording:
-        """Play a scene from its beginning, record what the board says of itself meanwhile, and stop.
+        """Play a scene from its beginning, record the board's telemetry, and stop.
 
         Parameters
         ----------
@@ -344,13 +344,13 @@ class Device:
         messages_per_s
             Rows a second, at most 1000.
         on_active
-            Called once, as soon as the board says that it plays.
+            Called once, as soon as the board reports that it plays.
 
         Returns
         -------
         Recording
             What the board reports: place, speed, what is asked for, voltage and flags; `t_s` is 0 at the first row.
-            What only a simulator knows, such as the felt friction, is not a number.
+            Columns that only a simulator knows, such as the felt friction, are not-a-number.
 
         Raises
         ------
@@ -413,14 +413,14 @@ class Device:
 
     @property
     def state(self) -> str:
-        """`disarmed`, `armed`, `active` or `faulted`, as the board said last; `unknown` if it was gone at the end."""
+        """`disarmed`, `armed`, `active` or `faulted`, as last reported; `unknown` if the board was gone at the end."""
         if not self._device.is_closed:
             self._take(self._device.look())
         return self._state
 
     @property
     def board(self) -> str:
-        """What kind of board it is."""
+        """Kind of the board."""
         return self._device.board
 
     @property
@@ -447,7 +447,7 @@ class Device:
             raise
 
     def _take(self, answer: _frixel.Answer) -> list[str]:
-        """Keep what the board said of itself. Returns the sentences."""
+        """Keep the board's report. Returns the sentences."""
         self._state, self._now_s, self._streaming, sentences, _ = answer
         return sentences
 

@@ -1,4 +1,4 @@
-"""What goes wrong, as one family of exceptions."""
+"""The exceptions of this package."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class FrixelError(Exception):
 
 
 class ParameterError(FrixelError, ValueError):
-    """A value that is not taken: the message says what was found, and what is expected."""
+    """A value that is not accepted: the message says what was found, and what is expected."""
 
 
 class ColumnError(ParameterError, KeyError):

@@ -24,7 +24,7 @@ class _Profile:
     text: str | None
     """The text of the file; `None` of one that comes with the package."""
     name: str
-    """What messages call it."""
+    """Its name in messages."""
 
     kind: ClassVar[str]
 
@@ -86,7 +86,7 @@ class _Profile:
 
     @classmethod
     def of(cls, profile: Self | str | Mapping[str, Any]) -> Self:
-        """One as arguments name it: itself, the name of a bundled one, or the fields of its file."""
+        """Convert an argument to a profile: a profile itself, the name of a bundled one, or the fields of its file."""
         if isinstance(profile, str):
             if profile.endswith(".toml"):
                 raise ParameterError(

@@ -40,9 +40,9 @@ TICKS_PER_S = 40_000
 class Recording(Mapping[str, NDArray[Any]]):
     """Columns of equal length, by name: `recording["felt_n"]`.
 
-    `COLUMNS` has the unit and the meaning of each. A number that is unknown is not a number; `flags` are texts. The
-    arrays are read-only: a change in place would be another play's. Two recordings are equal if they have the same
-    columns, bit for bit, of the same scene.
+    `COLUMNS` has the unit and the meaning of each. Unknown numbers are not-a-number; `flags` are texts. The arrays are
+    read-only: a change in place would be another play's. Two recordings are equal if they have the same columns, bit
+    for bit, of the same scene.
     """
 
     columns: dict[str, NDArray[Any]]

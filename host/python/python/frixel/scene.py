@@ -95,7 +95,7 @@ class Scene:
 
     @classmethod
     def of(cls, scene: Scene | Mapping[str, Any]) -> Scene:
-        """One as arguments name it: itself, or the tables of its file."""
+        """Convert an argument to a scene: a scene itself, or the tables of its file."""
         scene = cls.from_dict(scene) if isinstance(scene, Mapping) else scene
         if not isinstance(scene, Scene):
             raise refusal("a scene", "a Scene or its tables, and Scene.load reads a file", scene)

@@ -94,7 +94,7 @@ class Simulator:
         Returns
         -------
         Recording
-            What the finger felt, what the scene wanted there, and what the board did.
+            Felt friction, reference friction, and the output of the board.
 
         Raises
         ------

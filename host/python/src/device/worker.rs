@@ -22,7 +22,7 @@ use super::observed::Observed;
 /// Seed of the simulated world.
 const SEED: u64 = 1;
 
-/// What the program asks for.
+/// A request of the program.
 pub(super) enum Request {
     Play(Box<Program>),
     Replace(Box<Program>),
@@ -44,12 +44,12 @@ pub(super) enum Request {
     },
     /// Lets so much time pass on the board.
     Listen(Duration),
-    /// Asks for a report alone.
+    /// Requests a report alone.
     Look,
     Stop,
 }
 
-/// How it stands after a request.
+/// State after a request.
 pub(super) struct Report {
     pub(super) state: State,
     /// Time on the link's clock.
@@ -65,7 +65,7 @@ pub(super) struct Report {
 pub(super) enum Trouble {
     /// Python's program was interrupted; the board is disarmed.
     Signal(PyErr),
-    /// A value that is not taken; the board goes on as before.
+    /// A value was rejected; the board continues as before.
     Parameter(String),
     /// The board refuses, has stopped, or is gone.
     Play(String),
@@ -125,8 +125,9 @@ impl Interrupted {
 /// The two ends of the line to the program.
 type Ends<'a> = (&'a Receiver<Request>, &'a Sender<Result<Report, Trouble>>);
 
-/// Opens the board at a port, says so or why not through `opened`, and serves it until the program has let go of it. A
-/// board that is not simulated is opened only with `arm`.
+/// Opens the board at a port, and serves requests until the program releases it.
+///
+/// The outcome of the opening is reported through `opened`. A board that is not simulated is opened only with `arm`.
 pub(super) fn run(
     port: &str,
     arm: bool,
@@ -140,7 +141,7 @@ pub(super) fn run(
         real(port, arm, opened, ends, interrupted)
     };
     if let Err(trouble) = served {
-        // Nobody listens if the program has ended meanwhile.
+        // There is no receiver if the program has ended meanwhile.
         let _ = opened.send(Err(trouble));
     }
 }
@@ -205,7 +206,7 @@ fn carry_out<L: Link>(
     interrupted: &Interrupted,
 ) -> Result<Vec<String>, PlayError> {
     if !matches!(request, Request::Stop | Request::Play(_)) {
-        // Takes in what the board has sent meanwhile: it may have stopped.
+        // Handles the messages that the board has sent meanwhile: it may have stopped.
         player.device_mut().keep_alive()?;
         match player.step(Duration::ZERO) {
             Err(PlayError::Stopped(_)) if matches!(request, Request::Look) => {}

@@ -1,4 +1,4 @@
-//! `frixel board faults`: what a board says of its last fault.
+//! `frixel board faults`: the last fault of a board.
 
 use anyhow::Result;
 use clap::Args;

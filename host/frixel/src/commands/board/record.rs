@@ -100,8 +100,8 @@ fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interr
     Ok(device.subscribe(0)?)
 }
 
-/// The number of the rows with a touch. The error says where there is a row that no record writes: another command has,
-/// or a crash of the machine has left zeros in its place.
+/// Number of the rows with a touch. The error names a row that no recording writes: another command wrote it, or a
+/// crash of the machine left zeros in its place.
 fn touched(text: &str) -> Result<u64, TableError> {
     let mut table = Table::new(text.as_bytes())?;
     let t = table.need(Column::new("t_s", "seconds"))?;

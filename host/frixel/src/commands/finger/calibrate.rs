@@ -22,7 +22,7 @@ use crate::commands::terminal::say;
 use frixel_files::{Inputs, OutputFile};
 use recorded::Recorded;
 
-/// How to keep what a board reported until the recording was cut off.
+/// Advice on how to keep the board's rows of an interrupted recording.
 const CUT_OFF: &str = "add --finish, and the --forces of that run unless they came on standard input, to keep it";
 
 #[derive(Debug, Args)]
@@ -88,7 +88,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
     written.map_err(|error| cut_off(&recording, CUT_OFF, error))
 }
 
-/// Makes the recording of what one that was cut off has left.
+/// Completes an interrupted recording from its rows.
 fn finish(args: &CalibrateArgs, recording: &OutputFile) -> Result<()> {
     let (_partial, text) = recording.resume()?;
     let board = read_board(text.as_bytes())?;
@@ -97,7 +97,7 @@ fn finish(args: &CalibrateArgs, recording: &OutputFile) -> Result<()> {
     write(args, recording, &(board, forces), None)
 }
 
-/// Joins what board and sensor saw, and writes it.
+/// Joins the data of board and sensor, and writes them.
 fn write(
     args: &CalibrateArgs,
     recording: &OutputFile,

@@ -52,8 +52,8 @@ pub(super) fn follow<L: RecordedLink>(
     Ok(play.finish(ended, playing))
 }
 
-/// Refuses to join a log to what a finger did on a real board: the joined rows replace a recording while they are
-/// written, and that of a person cannot be made again.
+/// Refuses to join a log to a play on a real board: the joined rows replace a recording while they are written, and a
+/// recording of a person cannot be made again.
 fn check_log(args: &PlayArgs, is_simulated: bool) -> Result<()> {
     if args.with_log.is_some() && !is_simulated {
         bail!(

@@ -46,7 +46,7 @@ enum Origin {
     Other,
 }
 
-/// What became of a scene that was put on the board.
+/// Outcome of putting a scene on the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReplaceOutcome {
     Plays,

@@ -19,7 +19,7 @@ use super::with_log::{LayeredRow, LogJoin};
 
 /// The option that names the folder.
 const OPTION: &str = "--out";
-/// How to keep what a finger did on a board until the play was cut off.
+/// Advice on how to keep the rows of an interrupted play on a board.
 const CUT_OFF: &str = "rename it to keep it";
 
 /// The files of a play.
@@ -27,7 +27,7 @@ const CUT_OFF: &str = "rename it to keep it";
 pub(super) struct PlayFiles {
     felt: OutputFile,
     summary: OutputFile,
-    /// `felt.svg`, or `commanded.svg` where nobody knows what is felt.
+    /// `felt.svg`, or `commanded.svg` where felt friction is unknown.
     svg: OutputFile,
     /// The other one of the two, which an earlier play may have left.
     other_svg: OutputFile,
@@ -201,7 +201,7 @@ impl Outputs {
         }
     }
 
-    /// Continues with another program from a time on, whose layers nobody has touched yet.
+    /// Continues with another program from a time on. None of its layers counts as touched.
     pub(super) fn replace(&mut self, t_s: f64, program: &Program) {
         self.touched = TouchedLayers::new(program);
         self.replaced_at_s = Some(t_s);
@@ -246,7 +246,7 @@ impl Outputs {
 
     /// Completes `felt.csv` and the file of `--record`, draws `felt.svg`, or `commanded.svg` for a board at a port, and
     /// `scene.png`, and writes `summary.json`, which has their hashes. Returns the paths of the files. If one of them
-    /// cannot be written, all are as they were before, and what a person's finger did is in `felt.csv.partial`.
+    /// cannot be written, the earlier ones stay unchanged, and the rows of a person are in `felt.csv.partial`.
     pub(super) fn finish(
         mut self,
         program: &Program,

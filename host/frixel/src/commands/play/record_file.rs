@@ -17,7 +17,7 @@ use super::PlayArgs;
 
 /// The option that names the file.
 const OPTION: &str = "--record";
-/// How to keep what a finger did on a board until the play was cut off.
+/// Advice on how to keep the rows of an interrupted play on a board.
 const CUT_OFF: &str = "rename it to keep it";
 /// Most time of a person's play that is lost when the process is killed, s.
 const PERSON_GROUP_S: u32 = 10;

@@ -1,4 +1,4 @@
-"""Experiments with people or simulated observers: what to present next, what was answered, and what it says.
+"""Experiments with people or simulated observers: choose levels, record answers, and estimate thresholds.
 
 A *method* (:class:`ConstantStimuli`, :class:`UpDown`, :class:`QuestPlus`) chooses the level of each trial. A *task*
 (:data:`TWO_ALTERNATIVES`, :data:`SAME_DIFFERENT`) says what a person who feels nothing answers. :func:`estimate` fits

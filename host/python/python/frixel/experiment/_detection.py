@@ -33,7 +33,7 @@ REACH = 0.999
 NORMAL_LOAD_N = 0.5
 GAP_UM = 10.0
 CONTACT = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=1e-6 * GAP_UM)
-"""The finger that the board computes voltages with. Any will do, because only the voltages count."""
+"""Finger for which the board computes voltages. Any finger will do, because only the voltages count."""
 EXAMPLE = {
     "friction_coefficient": 0.5,
     "normal_load_n": NORMAL_LOAD_N,

@@ -1,4 +1,4 @@
-"""What answers say: threshold with interval, or that they are no better than guessing."""
+"""Estimates from answers: a threshold with its interval, or that they are no better than guessing."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ class Method(Protocol):
 
 
 class ConstantStimuli:
-    """Each of some levels equally often, in an order by seed that has every level once in each round."""
+    """Presents each level equally often: every level once in each round, in an order drawn by seed."""
 
     def __init__(self, levels: ArrayLike, repetitions: int, *, seed: int = 0) -> None:
         one_round = _levels(levels)

@@ -85,11 +85,12 @@ class _Play:
 class Session:
     """The answers of one participant in a folder: a manifest, a line for each trial, and the recordings of all plays.
 
-    A folder that has trials already is gone on with, if its manifest is the same: no answered trial is repeated, and at
-    most the one that ran is lost. ``participant`` is a code of letters, digits, ``-``, ``_`` and ``.``, not a name.
+    A session is resumed in a folder that has trials already, if the manifest is the same: no answered trial is
+    repeated, and at most the one that ran is lost. ``participant`` is a code of letters, digits, ``-``, ``_`` and
+    ``.``, not a name.
 
     :meth:`play` plays and records, and the manifest gets the SHA-256 of each recording by itself. ``played`` are texts
-    of what is played in another way, or must not change between two runs, by a name of your choice; their SHA-256
+    by names of your choice that must not change between two runs, such as what is played in another way. Their SHA-256
     stands in the manifest, too, and a folder with others is refused.
 
     ``on_marker`` is called with ``"began"``, ``"play"``, ``"presented"`` and ``"answered"`` and the trial, at that

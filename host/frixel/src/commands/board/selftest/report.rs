@@ -24,12 +24,12 @@ pub(super) struct Report {
     script_version: u32,
     /// Whether the script came to its end with every measurement in its range.
     passed: bool,
-    /// Why the script ended before its end.
+    /// Why the script ended early.
     stopped: Option<String>,
     measurements: Vec<Found>,
     /// Ticks by eighths of their deadline, those beyond it last.
     ticks: BTreeMap<String, Vec<u32>>,
-    /// Every line that the board said.
+    /// Every line that the board sent.
     said: Vec<String>,
     #[serde(skip)]
     of_line: Vec<String>,
@@ -48,7 +48,7 @@ struct Found {
 }
 
 impl Report {
-    /// A report of a board that has said nothing yet.
+    /// An empty report.
     pub(super) fn new() -> Self {
         Self {
             format: FORMAT,
@@ -101,7 +101,7 @@ impl Report {
         }
     }
 
-    /// What [`Self::take_line`] has measured, as the board says its own.
+    /// Measurements of [`Self::take_line`], in the form of the board's own.
     pub(super) fn of_line(&self) -> &[String] {
         &self.of_line
     }
@@ -121,12 +121,12 @@ impl Report {
         self.measurements.iter().filter(|found| !found.passed).count()
     }
 
-    /// Why the script ended before its end.
+    /// Why the script ended early.
     pub(super) fn stopped(&self) -> Option<&str> {
         self.stopped.as_deref()
     }
 
-    /// Whether the board has said its last line.
+    /// Whether the board has sent its last line.
     pub(super) fn has_ended(&self) -> bool {
         self.has_ended
     }

@@ -33,7 +33,7 @@ const SCRIPT_LINE_MAX_BYTES: usize = 1024;
 const SCRIPT_LINES_MAX: usize = 1000;
 /// Bytes a second at 8 data bits, a start bit and a stop bit.
 const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
-/// In front of a word that the board waits for.
+/// Prefix of a word that the board waits for.
 const ASKS: &str = "Then type: ";
 
 /// Does the self-test of the board at a port.
@@ -69,7 +69,7 @@ struct Host {
     heard: Vec<u8>,
     report: Report,
     line_seconds: u32,
-    /// The board has not said anything since the test of the line.
+    /// Whether the board has sent nothing since the test of the line.
     line_was_tested: bool,
 }
 
@@ -165,7 +165,7 @@ impl Host {
         Ok(())
     }
 
-    /// The next line of the board that is not empty; `None` if none ends for so long.
+    /// The next line of the board that is not empty; `None` if no line ends within `patience`.
     fn line(&mut self, patience: Duration) -> Result<Option<String>> {
         let begun = Instant::now();
         loop {

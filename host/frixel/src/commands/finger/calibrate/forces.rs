@@ -64,7 +64,7 @@ impl StandardInput {
             thread::sleep(Duration::from_millis(5));
         }
         if self.reader.is_finished() {
-            // A thread that panicked has said so.
+            // A thread that panicked has printed its message.
             self.reader.join().unwrap_or(Ok(()))?;
         }
         Ok(std::mem::take(&mut self.bytes.lock().unwrap_or_else(PoisonError::into_inner)))

@@ -121,7 +121,7 @@ fn highest_voltage(given_v_rms: Option<f64>, limits: &BoardLimits, tick_hz: u32)
     }
 }
 
-/// What the board has reported since the last call.
+/// The board's reports since the last call.
 fn board_rows<L: RecordedLink>(player: &mut Player<L>) -> impl Iterator<Item = BoardRow> {
     let row = |row: FeltRow| {
         let (time_s, speed_mm_s) = (row.t_s, row.speed_mm_s.unwrap_or(0.0));

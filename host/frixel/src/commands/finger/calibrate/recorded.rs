@@ -1,4 +1,4 @@
-//! What board and sensor see of a calibration: on the simulator, or on a board at a port.
+//! Board and sensor data of a calibration, on the simulator or on a board at a port.
 
 use std::path::Path;
 use std::time::Duration;
