@@ -13,12 +13,11 @@ pub(super) fn is_named_so(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
-/// Rejects a recording whose name says neither CSV nor Parquet, and the code of a participant for one in CSV, which has
-/// no place for it. A device, a pipe and standard output have names of their own.
+/// Rejects a recording whose name ends as another kind of file does, and the code of a participant for one in CSV, which
+/// has no place for it.
 pub(super) fn check_output(output: &Path, participant: Option<&str>) -> Result<()> {
-    let is_csv = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let is_stream = output == Path::new("-") || output.metadata().is_ok_and(|found| !found.is_file());
-    if !is_csv && !is_named_so(output) && !is_stream {
+    let is_another = output.extension().is_some_and(|extension| !extension.eq_ignore_ascii_case("csv"));
+    if is_another && !is_named_so(output) {
         bail!("{} is no CSV or Parquet file by its name: end it in .csv or .parquet", output.display());
     }
     if participant.is_some() && !is_named_so(output) {

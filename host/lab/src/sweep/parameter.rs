@@ -157,7 +157,7 @@ mod tests {
     fn a_path_that_leads_nowhere_is_named() {
         let value = Value::Whole(1);
         for (path, said) in [
-            ("layer.3.high_n", "a.toml has no layer 3: it has 2"),
+            ("layer.3.high_n", "a.toml has no layer 3, but 2 layers: write layer.1 to layer.2"),
             ("layer.first.high_n", "no layer first"),
             ("layer.0.high_n", "no layer 0"),
             ("layer.1", "no place for a value"),
