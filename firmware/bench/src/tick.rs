@@ -49,7 +49,7 @@ pub(crate) struct Bench {
     pub(crate) kinds_counted: u32,
     monitor: IdealMonitor,
     /// Whether one monitor reading in four is wrong while the amplifier is enabled: the largest share that the correct
-    /// ones compensate. The supervisor then counts every tick, as it does while the amplifier switches.
+    /// ones compensate. The supervisor then checks every reading, as it does while the amplifier switches.
     pub(crate) disturbs_monitor: bool,
     is_enabled: bool,
 }

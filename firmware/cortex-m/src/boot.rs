@@ -19,7 +19,7 @@ impl Boot {
     }
 }
 
-/// Panics if a static would be taken twice, which cannot happen. A panic sets the output to zero and resets.
+/// Panics in a state that cannot occur. A panic sets the output to zero and resets.
 #[allow(clippy::panic, clippy::missing_panics_doc, reason = "there is nothing to go on with")]
 pub fn unreachable_state() -> ! {
     panic!("a static was taken twice")

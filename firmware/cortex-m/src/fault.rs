@@ -79,7 +79,7 @@ macro_rules! fault_handlers {
 
         /// Takes the cause of the last reset and the stored fault, and clears both. Call this once in each start.
         pub fn last_reset(text: &'static mut $crate::fault::parts::Text) -> $crate::fault::parts::LastReset {
-            let record = $crate::uninitialized(&RECORD);
+            let record = $crate::retained(&RECORD);
             let cause = <$chip as $crate::fault::Chip>::reset_cause(record.survived_reset());
             $crate::fault::parts::LastReset::take(cause, record, text)
         }
@@ -196,7 +196,7 @@ fn status() -> Option<(u32, u32)> {
 /// Returns a place that the start-up code does not clear, such as a static in the section `.uninit`. Its initialiser is
 /// never written, so the compiler must not assume the initial content. Use it only for atomic integers, for which every
 /// content is valid.
-pub fn uninitialized<T: Sync>(place: &'static T) -> &'static T {
+pub fn retained<T: Sync>(place: &'static T) -> &'static T {
     #[cfg(target_arch = "arm")]
     // SAFETY: no instruction. For all that the compiler knows, it writes the place.
     unsafe {

@@ -6,7 +6,7 @@
 //! - [`fault_handlers!`]: the handlers of panics, hard faults and interrupts without a handler, and the record of the
 //!   last fault;
 //! - [`guard`]: turns a stack overflow into a fault;
-//! - [`uninitialized`]: a place that the start-up code does not clear;
+//! - [`retained`]: a place that the start-up code does not clear;
 //! - [`runs_from_ram!`]: an image that runs from RAM;
 //! - [`CycleDelay`]: waits by the core's clock.
 #![no_std]
@@ -21,6 +21,6 @@ mod tick_owner;
 
 pub use boot::{Boot, unreachable_state};
 pub use delay::CycleDelay;
-pub use fault::uninitialized;
+pub use fault::retained;
 pub use owned::Owned;
 pub use tick_owner::TickOwner;

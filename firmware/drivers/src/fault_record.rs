@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_record_that_a_start_has_marked_has_outlasted_a_reset() {
+    fn only_a_record_that_a_start_has_marked_survived_a_reset() {
         let record = FaultRecord::new();
         assert!(!record.survived_reset());
         record.mark();

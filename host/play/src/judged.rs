@@ -44,6 +44,6 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Sim
     let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0)?;
     let stream = RigStream::new(Rig::new(&mut memory, rig, stroke, SEED)?);
     let mut device = Device::connect(PollingLink::new(stream))?;
-    let wire_bytes = load(&mut device, program, &mut ignore_progress)?;
+    let wire_bytes = load(&mut device, program, &mut ignore_progress).map_err(SimulationError::Refused)?;
     Ok(BoardCosts::of(program, rig, wire_bytes))
 }

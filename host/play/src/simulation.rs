@@ -54,6 +54,9 @@ pub enum SimulationError {
     /// The finger's stroke could not be built.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
+    /// The board rejected the scene.
+    #[error("the board does not take this scene: {0}")]
+    Refused(#[source] DeviceError),
     /// The play failed.
     #[error(transparent)]
     Play(#[from] PlayError),
@@ -73,7 +76,7 @@ impl Simulation {
         Self { rig, stroke, seconds, seed, ticks_per_row, through_finger: true }
     }
 
-    /// The world of a board that is not this process's: with a finger of its own, or else the one that `program` is for.
+    /// The world of a board in another process, with a finger of its own, or else the one that `program` is for.
     pub fn world(&self, program: &Program) -> Result<World, SimulationError> {
         let mut world = World::new(self.rig.world, self.stroke.clone(), self.seed)?;
         world.set_finger(program.header.friction_law().map_err(PlayError::Finger)?);

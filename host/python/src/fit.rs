@@ -10,8 +10,12 @@ use super::profile::ProfileText;
 use super::signals::interruptible;
 
 /// Options of the command that sentences name, and the arguments in their place.
-const ARGUMENTS: [(&str, &str); 3] =
-    [("--without", "`without`"), ("--voltage", "`voltage_v_rms`"), ("--load", "`normal_load_n`")];
+const ARGUMENTS: [(&str, &str); 4] = [
+    ("`frixel finger fit DATA.csv --law empirical`", "`law=\"empirical\"`"),
+    ("--without", "`without`"),
+    ("--voltage", "`voltage_v_rms`"),
+    ("--load", "`normal_load_n`"),
+];
 
 /// What to fit for, an object of `python/frixel/fitting.py`.
 #[derive(FromPyObject)]

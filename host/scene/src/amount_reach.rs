@@ -114,7 +114,8 @@ impl Search<'_> {
             }
             return inside_n;
         }
-        side * size_n
+        // Nothing bounds it: the drive's amount, or the present one if that is larger.
+        side * size_n.max(side * start_n)
     }
 
     /// Whether no place is out of reach where the layer applies, with this electric friction as its amount.

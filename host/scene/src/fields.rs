@@ -34,6 +34,8 @@ pub(super) struct Fields<'i> {
     places: Places,
     known: Vec<KnownField>,
     required: Vec<&'static str>,
+    /// Whether a region would give the required place.
+    region_is_place: bool,
     either: Vec<[&'static str; 2]>,
     /// Whether the table's fields follow from a misspelt word.
     pub(super) is_guess: bool,
@@ -91,6 +93,7 @@ impl<'i> Fields<'i> {
             known: Vec::new(),
             required: Vec::new(),
             either: Vec::new(),
+            region_is_place: false,
             is_guess: false,
             replaced_defaults: Vec::new(),
             replaces_default: false,
@@ -184,7 +187,7 @@ impl<'i> Fields<'i> {
             !(self.is_guess || self.places.has(field) || is_reported)
         };
         let missing: Vec<&'static str> = self.required.iter().filter(is_missing).copied().collect();
-        let has_no_place = self.key == "layer" && PLACE.iter().all(|field| missing.contains(field));
+        let has_no_place = self.region_is_place && PLACE.iter().all(|field| missing.contains(field));
         if has_no_place {
             log.add(self.places.table(), FieldMistake::MissingPlace { table: self.table.clone() });
         }
@@ -259,6 +262,12 @@ impl<'i> Fields<'i> {
     /// Reports a mistake if the file lacks a field.
     pub(super) fn require(&mut self, field: &FieldSpec) {
         self.required.push(field.name);
+    }
+
+    /// Requires a field of a layer's place, which a region would give as well.
+    pub(super) fn require_place(&mut self, field: &FieldSpec) {
+        self.region_is_place = true;
+        self.require(field);
     }
 
     /// Offset of the table.

@@ -46,7 +46,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &config.for_drafts()) {
         // Not even the simulator plays it.
-        Err(SimulationError::Play(_)) if program.is_draft() => {
+        Err(SimulationError::Refused(_)) if program.is_draft() => {
             return Ok(json!({ "ok": false, "problems": problems }));
         }
         costs => costs.map_err(HostError::Simulation)?,

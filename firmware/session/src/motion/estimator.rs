@@ -3,7 +3,7 @@
 //! A Kalman filter of place, velocity and acceleration along each axis. The acceleration is random and decays with a
 //! time constant (R. A. Singer, IEEE Transactions on Aerospace and Electronic Systems 6(4), 1970, 473). Both axes share
 //! the covariance. It grows with the time between samples, so that after a lost sample, the filter gives the next one
-//! more weight; a filter with constant gains does not (`docs/design/touch.md` compares both).
+//! more weight; a filter with constant gains does not.
 
 /// Time constant of the finger's acceleration, in s. From 0.03 to 0.1, the error on human strokes changes by only a
 /// twentieth.

@@ -29,8 +29,8 @@ pub enum PortError {
         port: String,
     },
     /// The path is that of a file or a folder.
-    #[error("{port} is no serial port; `frixel board ports` lists those of this machine")]
-    NoPort {
+    #[error("{port} is not a serial port; `frixel board ports` lists the ports of this machine")]
+    NotASerialPort {
         /// The path that was given.
         port: String,
     },

@@ -91,7 +91,7 @@ pub(super) fn why_not_opened(port: &str, error: serialport::Error) -> PortError 
         Kind::NoDevice if port_exists() => PortError::Busy { port: port.into() },
         Kind::NoDevice | Kind::Io(ErrorKind::NotFound) => not_there(port),
         Kind::Io(ErrorKind::PermissionDenied) => PortError::NoPermission { port: port.into() },
-        _ if is_other() => PortError::NoPort { port: port.into() },
+        _ if is_other() => PortError::NotASerialPort { port: port.into() },
         _ => PortError::NotOpened { port: port.into(), reason: error.description },
     }
 }
@@ -133,7 +133,7 @@ mod tests {
         assert!(matches!(why("nowhere", serialport::ErrorKind::NoDevice), PortError::NotThere { .. }));
         assert!(matches!(why("nowhere", io(ErrorKind::NotFound)), PortError::NotThere { .. }));
         assert!(matches!(why(path, io(ErrorKind::PermissionDenied)), PortError::NoPermission { .. }));
-        assert_eq!(why(path, serialport::ErrorKind::Unknown), PortError::NoPort { port: path.into() });
+        assert_eq!(why(path, serialport::ErrorKind::Unknown), PortError::NotASerialPort { port: path.into() });
         assert!(matches!(why("nowhere", serialport::ErrorKind::Unknown), PortError::NotOpened { .. }));
         assert!(why(path, io(ErrorKind::PermissionDenied)).to_string().contains("dialout"));
     }

@@ -236,7 +236,7 @@ fn reason_text(reason: &Reason) -> Option<String> {
                 SizeLimit::Fingertip => "a fingertip",
                 SizeLimit::TouchSource => "the touch source",
             };
-            format!("too narrow for {limit}, whatever the scene's {} Weber steps", weber_steps_text(*weber_steps))
+            format!("too narrow for {limit}, although the scene has {} Weber steps", weber_steps_text(*weber_steps))
         }
         Reason::TooSlow { way_mm, weber_steps } => {
             format!("too slow a slope: {} in total, over more than {way_mm:.0} mm", weber_steps_text(*weber_steps))

@@ -13,8 +13,8 @@ pub(super) fn is_named_so(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
-/// Rejects a recording whose name ends as another kind of file does, and the code of a participant for one in CSV, which
-/// has no place for it.
+/// Rejects a recording whose name ends as another kind of file does, and the code of a participant for one in CSV,
+/// which has no place for it.
 pub(super) fn check_output(output: &Path, participant: Option<&str>) -> Result<()> {
     let is_another = output.extension().is_some_and(|extension| !extension.eq_ignore_ascii_case("csv"));
     if is_another && !is_named_so(output) {

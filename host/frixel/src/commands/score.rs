@@ -38,7 +38,8 @@ pub(super) struct ScoreArgs {
     #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=1000_u64))]
     seeds: u64,
     /// Length of a generated stroke.
-    #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS, value_parser = super::argument::seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS)]
+    #[arg(value_parser = super::argument::seconds, allow_negative_numbers = true)]
     seconds: f64,
     /// Median speed of human strokes. Without it, each person has their own.
     #[arg(long, value_name = "MM_PER_S", value_parser = median_speed, allow_negative_numbers = true)]

@@ -64,13 +64,13 @@ impl SavedFile {
     /// Whether the file has vanished, reported once.
     pub(super) fn has_vanished(&mut self) -> bool {
         let has_vanished = self.missed == CHECKS_GONE;
-        // Reported only once, although there may be several calls between two checks.
+        // Reported only once.
         self.missed += u32::from(has_vanished);
         has_vanished
     }
 
-    /// Checks the file, once every [`CHECK_PERIOD`]. Returns whether it has changed since it was read; false while it
-    /// changes, and while it does not exist.
+    /// Checks the file now. Call this once every [`CHECK_PERIOD`]: a change counts once two calls in a row find it.
+    /// Returns whether the file has changed since it was read; false while it does not exist.
     pub(super) fn is_saved(&mut self) -> bool {
         let now = Fingerprint::of(&self.path);
         self.missed = if now.is_some() { 0 } else { self.missed.saturating_add(1) };

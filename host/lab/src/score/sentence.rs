@@ -57,7 +57,12 @@ impl Score {
         match (below.len(), fingers) {
             (0, _) => all,
             (_, fingers) if fingers > 1 && by_all.is_empty() => {
-                format!("not noticed by all {fingers} simulated fingers: {}", by_count(&below, fingers))
+                let by = by_count(&below, fingers);
+                if layers.len() == 1 {
+                    format!("not noticed by all {fingers} simulated fingers: {by}")
+                } else {
+                    format!("none of {} layers is noticed by all {fingers} simulated fingers: {by}", layers.len())
+                }
             }
             (_, 1) => format!("{all}; {}", by_verdict(&below)),
             _ => format!("{all}; noticed by fewer: {}", by_count(&below, fingers)),
@@ -175,7 +180,7 @@ mod tests {
         );
         assert_eq!(
             score(8, bars(7, [3, 0]), Vec::new()).sentence(),
-            "not noticed by all 8 simulated fingers: layer 1 \"bar 1\" by 3 of 7, layer 2 \"bar 2\" by 0 of 7"
+            "none of 2 layers is noticed by all 8 simulated fingers: layer 1 \"bar 1\" by 3 of 7, layer 2 \"bar 2\" by 0 of 7"
         );
     }
 
@@ -241,7 +246,7 @@ mod tests {
         let key = |copy| layer(title(1, Some(copy), &format!("key {copy}")), verdicts(4, copy % 3, 0));
         assert_eq!(
             score(4, (1..=30).map(key).collect(), Vec::new()).sentence(),
-            "not noticed by all 4 simulated fingers: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
+            "none of 30 layers is noticed by all 4 simulated fingers: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();

@@ -87,10 +87,10 @@ impl TrialPlan {
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
 
-    /// The trials of so many simulated people, the first of an assumed population, whom the board does not know;
-    /// without a number, of the finger that `program`, compiled from `scene`, is meant for. Refuses more plays than end, and
-    /// longer strokes than fit into memory. `goes_on` is asked before each stroke; when it breaks, the result is what was
-    /// made so far.
+    /// Trials of the first `people` of an assumed population, whom the board does not know.
+    ///
+    /// Without a number, of the finger of `program`, compiled from `scene`. Refuses more plays than end, and longer
+    /// strokes than fit into memory. When `goes_on` breaks, returns the trials so far.
     pub fn of_people(
         &self,
         people: Option<u64>,

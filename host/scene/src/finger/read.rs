@@ -20,7 +20,9 @@ const ORIGINS: [(&str, Origin); 4] = [
 
 /// Reads a whole table, that of a file or `[finger]` of a scene.
 pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
-    if let Some((place, name)) = fields.raw_text("name").filter(|(_, name)| FingerProfile::bundled(name).is_some()) {
+    let is_alone = !fields.has(table::FRICTION_COEFFICIENT.name);
+    let bundled = fields.raw_text("name").filter(|(_, name)| is_alone && FingerProfile::bundled(name).is_some());
+    if let Some((place, name)) = bundled {
         log.add(place, FieldMistake::BundledFinger { name });
         return None;
     }

@@ -102,7 +102,7 @@ impl LayerFields for Bitmap {
         // Place and width default to those of the region.
         let mut place = |field: &LengthFields| {
             if !fields.has_been_read(REGION.name) && !fields.has(field.px.name) {
-                fields.require(&field.mm);
+                fields.require_place(&field.mm);
             }
             fields.length_mm(log, field)
         };

@@ -14,7 +14,7 @@ fn patch(picture: &Picture, column: usize, row: usize) -> f32 {
 }
 
 #[test]
-fn colours_of_a_jpeg_are_turned_to_grey_by_luminance() {
+fn colours_of_a_jpeg_are_turned_to_grey_by_luma() {
     for jpeg in [COLOURS, include_bytes!("testdata/progressive.jpg")] {
         let picture = decoded(jpeg);
         assert_eq!((picture.width, picture.height), (48, 32));

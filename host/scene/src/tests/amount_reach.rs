@@ -104,3 +104,13 @@ fn at_the_end_of_an_amount_a_scene_compiles_and_beyond_it_does_not() {
     }
     assert!(ends > 400, "{ends}");
 }
+
+/// A layer without effect may have any amount: a slider ends no lower than the present one.
+#[test]
+fn an_amount_that_nothing_bounds_ends_at_or_above_itself() {
+    for words in ["gain = 0", "gain = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = 0"] {
+        let text = format!("{HEAD}[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n{words}\n");
+        let (_, found) = compile_draft_with_amounts(&scene(&text), &LIMITS, TICK_HZ).unwrap();
+        assert!(found[0].least <= 0.9 && found[0].most >= 0.9 - 1e-6, "{words}: {:?}", found[0]);
+    }
+}

@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use board_nucleo_g474re::watchdog::Watchdog;
 use frixel_board::bring_up::{FAULTS, Injection};
 use frixel_board::fault::LastReset;
-use frixel_cortex_m::uninitialized;
+use frixel_cortex_m::retained;
 use frixel_wire::fault::Fault;
 
 /// Marks the memory below as valid; the number of injected faults is in its lowest byte.
@@ -17,7 +17,7 @@ static INJECTED: AtomicU32 = AtomicU32::new(0);
 
 /// Progress of the fault injection after the last reset. Called once.
 pub(crate) fn after(last_reset: &LastReset) -> Injection {
-    let kept = uninitialized(&INJECTED).swap(0, Ordering::Relaxed);
+    let kept = retained(&INJECTED).swap(0, Ordering::Relaxed);
     let injected = if kept & !0xff == MARK { (kept & 0xff) as usize } else { 0 };
     Injection::after_reset(injected, last_reset.fault.map(|(fault, _)| fault))
 }
@@ -25,7 +25,7 @@ pub(crate) fn after(last_reset: &LastReset) -> Injection {
 /// Injects a fault.
 pub(crate) fn inject(fault: Fault) -> ! {
     let injected = FAULTS.iter().take_while(|other| **other != fault).count() + 1;
-    uninitialized(&INJECTED).store(MARK | injected as u32, Ordering::Relaxed);
+    retained(&INJECTED).store(MARK | injected as u32, Ordering::Relaxed);
     match fault {
         // An undefined instruction.
         Fault::HardFault => cortex_m::asm::udf(),

@@ -306,7 +306,7 @@ class Session:
             response = answer(trial)
             answered_s = self._now_s()
             is_same_different = self._task.name == "same-different"
-            # Of two alternatives, `True` is mostly meant as "correct".
+            # A bool would mean "correct", not a presentation.
             if response not in (0, 1) or (isinstance(response, (bool, np.bool_)) and not is_same_different):
                 raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
             times = {"played_s": played_s, "presented_s": presented_s, "answered_s": answered_s}
