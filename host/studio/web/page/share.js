@@ -40,7 +40,8 @@ export function linkOf(name, text, files) {
 export function whoCanOpen({ protocol, hostname }) {
   const isOwn = protocol === "file:" || ["127.0.0.1", "localhost", "[::1]"].includes(hostname);
   return isOwn
-    ? "It opens where this HTML file is: send the file with it, or a saved zip."
+    ? "It begins with an address on this computer: another person opens the studio's HTML file and pastes the link " +
+        "into the page, or under “Open…”. Send them the file, too, or a saved zip."
     : "Whoever opens it needs nothing else.";
 }
 
