@@ -4,7 +4,6 @@ use frixel_layers::{Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
 
-use super::amount_reach::{AmountReach, amounts_in_reach};
 use super::compile_error::CompileError;
 use super::excess;
 use super::file::Scene;
@@ -60,7 +59,7 @@ const VOLTAGE_MIN_V_RMS: f32 = 1.0;
 /// Returns all mistakes for which a board with these limits refuses the scene, including [`Scene::mistakes`].
 pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
     let mut log = Log::resuming(&scene.source, &scene.mistakes).of_refusals();
-    match assemble(scene, limits, tick_hz, &mut log, |_, _| {}) {
+    match assemble(scene, limits, tick_hz, &mut log) {
         Some(program) if log.mistakes() == 0 => Ok(Program { diagnostics: log.into_diagnostics(), ..program }),
         _ => log.finish(None),
     }
@@ -93,47 +92,15 @@ pub fn compile(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Prog
 /// # }
 /// ```
 pub fn compile_draft(scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
-    draft(scene, limits, tick_hz, |_, _| {})
-}
-
-/// As [`compile_draft`], with what the drive can give of each amount that the file has. Finding that takes about as
-/// many searches of the screen as the file has amounts, times ten.
-///
-/// # Errors
-///
-/// As [`compile_draft`].
-pub fn compile_draft_with_amounts(
-    scene: &Scene,
-    limits: &BoardLimits,
-    tick_hz: u32,
-) -> Result<(Program, Vec<AmountReach>), CompileError> {
-    let mut amounts = Vec::new();
-    let program = draft(scene, limits, tick_hz, |program, layers| amounts = amounts_in_reach(program, layers))?;
-    Ok((program, amounts))
-}
-
-fn draft(
-    scene: &Scene,
-    limits: &BoardLimits,
-    tick_hz: u32,
-    look: impl FnOnce(&Program, &[&Layer]),
-) -> Result<Program, CompileError> {
     let mut log = Log::resuming(&scene.source, &scene.mistakes).of_refusals();
-    match assemble(scene, limits, tick_hz, &mut log, look) {
+    match assemble(scene, limits, tick_hz, &mut log) {
         Some(program) if scene.mistakes.is_empty() => Ok(Program { diagnostics: log.into_diagnostics(), ..program }),
         _ => log.finish(None),
     }
 }
 
-/// Compiles everything that is valid, and logs all mistakes. `None` if finger and coating have no contact model. `look`
-/// gets the program with the layers of its records, before it is made smaller.
-fn assemble(
-    scene: &Scene,
-    limits: &BoardLimits,
-    tick_hz: u32,
-    log: &mut Log,
-    look: impl FnOnce(&Program, &[&Layer]),
-) -> Option<Program> {
+/// Compiles everything that is valid, and logs all mistakes. `None` if finger and coating have no contact model.
+fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) -> Option<Program> {
     // Consequences of another mistake are not reported.
     let mut unreported = log.scratch();
     let mistakes = log.mistakes();
@@ -210,7 +177,6 @@ fn assemble(
     for (layer, warning) in warning::of_layers(&scene.layers) {
         log.warn_about(layer, warning);
     }
-    look(&program, &layers);
     optimise(&mut program, &layers, log);
     let Program { header, records, points, .. } = &mut program;
     if header.layers_fixed {

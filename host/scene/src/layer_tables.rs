@@ -33,8 +33,6 @@ pub struct LayerTable {
     pub lines: (usize, usize),
     /// Left, top, width and height of the region of all its layers, mm; `None` for the whole screen.
     pub bounds_mm: Option<[f64; 4]>,
-    /// Whether a file that its own includes has `[defaults]`, which count for it, too.
-    pub has_other_defaults: bool,
 }
 
 impl Scene {
@@ -55,17 +53,6 @@ impl Scene {
         with_bounds.collect()
     }
 
-    /// Whether a file that file `number` includes has defaults.
-    fn includes_defaults(&self, number: usize) -> bool {
-        let files = self.source.files();
-        let includes = files.get(number).map_or(&[][..], |file| &file.includes);
-        includes.iter().any(|included| {
-            let text = files.get(*included).map_or("", |file| &file.text);
-            let has_own = toml(text).is_ok_and(|values| values.contains_key(scene::DEFAULTS.name));
-            has_own || self.includes_defaults(*included)
-        })
-    }
-
     /// The table of a layer, without its layers.
     fn layer_table(&self, layer: &Layer, written: &[Written]) -> LayerTable {
         let start = layer.places.table();
@@ -82,7 +69,6 @@ impl Scene {
             file: self.source.name_at(start).to_owned(),
             lines: (line(start), line(end)),
             bounds_mm: None,
-            has_other_defaults: self.includes_defaults(self.source.number_at(start)),
         }
     }
 }

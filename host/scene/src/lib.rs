@@ -30,7 +30,6 @@
 //! - [`mod@reference`]: the reference friction of a program, in `f64`, independent of the firmware.
 #![forbid(unsafe_code)]
 
-mod amount_reach;
 mod compile;
 mod compile_error;
 mod cover;
@@ -84,8 +83,7 @@ mod touched_layers;
 mod voltage;
 mod warning;
 
-pub use amount_reach::AmountReach;
-pub use compile::{compile, compile_draft, compile_draft_with_amounts};
+pub use compile::{compile, compile_draft};
 pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind, Message};
 pub use fields::has_unit;

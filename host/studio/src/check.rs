@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
 use crate::layers::layers;
-use crate::program::{drafted, drafted_with_amounts, touch_source};
+use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
@@ -20,7 +20,7 @@ pub fn check(request: &Request) -> Value {
     answer(request, true)
 }
 
-/// The same without what is felt, and without the ends of amounts: they take most of the time.
+/// The same without what is felt, which takes most of the time.
 pub fn compile(request: &Request) -> Value {
     answer(request, false)
 }
@@ -36,12 +36,7 @@ fn answer(request: &Request, is_judged: bool) -> Value {
 fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
     // The simulated board has the limits of the smallest board.
     let config = RigConfig::default();
-    let (scene, program, amounts) = if is_judged {
-        drafted_with_amounts(request)?
-    } else {
-        let (scene, program) = drafted(request)?;
-        (scene, program, Vec::new())
-    };
+    let (scene, program) = drafted(request)?;
     let touch = touch_source(request)?;
     let problems = problems_of(&program, &request.entry);
     let costs = match board_costs(&program, &config.for_drafts()) {
@@ -64,7 +59,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         "isDraft": program.is_draft(),
         "problems": problems,
         "screen": screen(&scene),
-        "layers": layers(&scene, &request.entry, &program, &amounts, &check.judgement),
+        "layers": layers(&scene, &request.entry, &program, &check.judgement),
         "report": format!("{draft}{}", check.summary(true)),
         "lowN": check.targets.least_n,
         "highN": check.targets.most_n,

@@ -1,11 +1,9 @@
 //! The layers of a scene's files, for a page that lists them beside the text.
 
-use std::collections::BTreeMap;
-
 use frixel_felt::check::feel;
 use frixel_felt::judge::{Judgement, LayerVerdict, Texture};
 use frixel_layers::{Point, Region, range};
-use frixel_scene::{AmountReach, LayerSetting, LayerTable, Program, Scene};
+use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde::Serialize;
 
 /// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
@@ -37,10 +35,6 @@ pub(crate) struct FileLayer {
     /// The least and the largest gain with which the drive can give what the layer asks for when it is on; `null` where
     /// it cannot be changed, or with no gain.
     gain_reach: Option<(f64, f64)>,
-    /// Likewise of each field of an amount in newtons or as a fraction that the file has; empty where it is not sought.
-    amount_reach: BTreeMap<&'static str, (f64, f64)>,
-    /// Whether a file that its own includes has `[defaults]`, which count for it, too.
-    has_other_defaults: bool,
     /// The file that it stands in, if that is not the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
@@ -100,17 +94,9 @@ impl PerceivedTexture {
 }
 
 /// The layers of a scene, called `entry`, that was compiled to `program`.
-pub(crate) fn layers(
-    scene: &Scene,
-    entry: &str,
-    program: &Program,
-    amounts: &[AmountReach],
-    judgement: &Judgement,
-) -> Vec<FileLayer> {
+pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<FileLayer> {
     let describe = |table: LayerTable| {
-        let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm, has_other_defaults } =
-            table;
-        let own = amounts.iter().filter(|reach| reach.table == number);
+        let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
         let live: Result<Vec<Vec<u8>>, _> = layers.iter().map(|layer| program.layers.records(layer)).collect();
         let gain_reach = live.as_ref().ok().and_then(|records| gain_reach(program, &records.concat()));
         FileLayer {
@@ -127,8 +113,6 @@ pub(crate) fn layers(
             gain_min: range::GAIN.min,
             gain_max: range::GAIN.max,
             gain_reach,
-            amount_reach: own.map(|reach| (reach.field, (reach.least, reach.most))).collect(),
-            has_other_defaults,
             file: (file != entry).then_some(file),
             from: lines,
             box_mm: bounds_mm.or_else(|| outline_mm(program, number)),

@@ -2,10 +2,7 @@
 
 use frixel_control::Board;
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{
-    AmountReach, CompileError, FingerProfile, Profile, Program, Scene, Screen, compile, compile_draft,
-    compile_draft_with_amounts,
-};
+use frixel_scene::{CompileError, FingerProfile, Profile, Program, Scene, Screen, compile, compile_draft};
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
 
@@ -34,14 +31,6 @@ pub(crate) fn drafted(request: &Request) -> Result<(Scene, Program), ProgramErro
     let scene = scene(request)?;
     let program = compile_draft(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz)?;
     Ok((scene, program))
-}
-
-/// As [`drafted`], with what the drive can give of the amounts of its layers.
-pub(crate) fn drafted_with_amounts(request: &Request) -> Result<(Scene, Program, Vec<AmountReach>), ProgramError> {
-    let scene = scene(request)?;
-    let Board { limits, tick_hz, .. } = Board::SIMULATOR;
-    let (program, amounts) = compile_draft_with_amounts(&scene, &limits, tick_hz)?;
-    Ok((scene, program, amounts))
 }
 
 /// The simulated touch source of a request.

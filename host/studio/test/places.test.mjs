@@ -92,7 +92,7 @@ async function changeAll(more) {
     const before = await check(text);
     for (const layer of before.layers) {
       const at = toml.layerAt(layer.from[0]);
-      const place = placeOf(toml, at, layer, before.screen);
+      const place = placeOf(toml, at, layer, before.screen, false);
       const about = { name: `${name} ${layer.name}`, isWhole: place.isWholeScreen };
       found.push({ ...about, what: "place", expected: list(bounds(place.box, place.copies)), actual: layer.boxMm });
       const make = async (what, changes, expected) => {
@@ -136,12 +136,12 @@ test("the place of a layer in its text is the compiler's, also after it was move
 });
 
 /** Runs in the page: the place of a layer of a file, on a screen of 120 by 80 mm, and the text once it has moved. */
-async function placeIn({ text, boxMm, kind = "constant", byMm = 0, hasOtherDefaults = false }) {
+async function placeIn({ text, boxMm, kind = "constant", byMm = 0 }) {
   const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
   const [{ TomlText }, { placeOf }] = [await module("toml_text"), await module("place")];
   const toml = new TomlText(text);
   const { move, whyNotMoved, whyNotResized, box, copies } =
-    placeOf(toml, 0, { kind, boxMm, hasOtherDefaults }, { widthMm: 120, heightMm: 80 });
+    placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 }, false);
   return { whyNotMoved, whyNotResized, box, copies, moved: whyNotMoved ? text : toml.with(move(byMm, 0)) };
 }
 
@@ -175,10 +175,23 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
   assert.equal(await xAfter("30.5", 0.4), "31.5");
 });
 
-test("a place out of defaults of an included file is not changed", async () => {
+/** Runs in the page: why a layer of a file with an include cannot be moved, with these other files. */
+async function whyNotMoved(more) {
+  const { EditedLayers } = await import(await studio.moduleUrl("page/edited_layers.js"));
   const text = 'version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
-  const why = async (hasOtherDefaults) =>
-    (await page.evaluate(placeIn, { text, boxMm: [10, 10, 20, 20], hasOtherDefaults })).whyNotMoved;
-  assert.match(await why(true), /defaults. of an included file/);
-  assert.doesNotMatch(await why(false), /defaults. of an included file/);
+  const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
+  const layer = { index: 0, name: "constant", kind: "constant", from: [3, 1], boxMm: [10, 10, 20, 20] };
+  const bytes = Object.entries(more).map(([name, content]) => [name, new TextEncoder().encode(content)]);
+  const files = { "a.toml": text, ...Object.fromEntries(bytes) };
+  layers.take({ layers: [layer], screen: { widthMm: 120, heightMm: 80 } }, files, "a.toml");
+  return layers.all[0].place.whyNotMoved;
+}
+
+test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
+  const why = (more) => page.evaluate(whyNotMoved, more);
+  const defaults = "[defaults.region]\nx_mm = 10\n";
+  assert.match(await why({ "parts/b.toml": defaults }), /defaults. of an included file/);
+  const further = { "parts/b.toml": 'include = ["../c.toml"]\n', "c.toml": defaults };
+  assert.match(await why(further), /defaults. of an included file/);
+  assert.doesNotMatch(await why({ "parts/b.toml": "", "c.toml": defaults }), /defaults. of an included file/);
 });

@@ -96,7 +96,6 @@ pub(crate) struct Bitmap {
 
 impl LayerFields for Bitmap {
     const WORD: &'static str = "bitmap";
-    const AMOUNTS: &'static [AmountFields] = &[BLACK, WHITE];
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         // Place and width default to those of the region.
@@ -201,10 +200,6 @@ impl IntoField for Record {
 
     fn without_place(self) -> Self {
         Self { x_m: 0.0, y_m: 0.0, angle_turns: 0.0, ..self }
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.black_n, &mut self.white_n]
     }
 }
 

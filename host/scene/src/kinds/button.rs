@@ -46,7 +46,6 @@ pub(crate) struct Button {
 impl LayerFields for Button {
     const WORD: &'static str = "button";
     const NEEDS_RIM: bool = true;
-    const AMOUNTS: &'static [AmountFields] = &[RIM, FACE, CLICK];
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let rim_width_mm = fields.number(log, &RIM_WIDTH);
@@ -108,10 +107,6 @@ impl IntoField for Record {
             face_n: f64::from(self.face_n),
             click: self.click,
         })
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.rim_n, &mut self.face_n, &mut self.click.height_n]
     }
 }
 

@@ -27,7 +27,6 @@ pub(crate) struct Constant {
 impl LayerFields for Constant {
     const WORD: &'static str = "constant";
     const TOTALS: bool = true;
-    const AMOUNTS: &'static [AmountFields] = &[FRICTION];
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         Some(Self { friction: Amount::read(fields, &FRICTION, unit, log)? })
@@ -46,10 +45,6 @@ impl LayerFields for Constant {
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
         Arc::new(ConstantField(f64::from(self.electric_friction_n)))
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.electric_friction_n]
     }
 }
 

@@ -35,7 +35,6 @@ pub(crate) struct Direction {
 
 impl LayerFields for Direction {
     const WORD: &'static str = "direction";
-    const AMOUNTS: &'static [AmountFields] = &[ALONG, AGAINST];
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let angle_deg = fields.angle_deg(log, &ANGLE);
@@ -63,10 +62,6 @@ impl LayerFields for Direction {
 impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
         Arc::new(*self)
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.along_n, &mut self.against_n]
     }
 }
 

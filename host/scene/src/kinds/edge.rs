@@ -49,7 +49,6 @@ impl LayerFields for Edge {
     const WORD: &'static str = "edge";
     /// By default an edge adds to the layers below, since most edges are ridges.
     const BLEND: Blend = Blend::Add;
-    const AMOUNTS: &'static [AmountFields] = &[RIDGE, CLICK];
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         let x_mm = fields.length_mm(log, &X);
@@ -113,10 +112,6 @@ impl IntoField for Record {
 
     fn without_place(self) -> Self {
         Self { x_m: 0.0, y_m: 0.0, angle_turns: 0.0, ..self }
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.ridge_n, &mut self.click.height_n]
     }
 }
 

@@ -107,10 +107,6 @@ impl IntoField for Record {
         let cycles_per_m_x = (100.0 * cycles_per_m).round() as f32 / 100.0;
         Self { phase_turns: 0.0, cycles_per_m_x, cycles_per_m_y: 0.0, ..self }
     }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.trough_n, &mut self.crest_n]
-    }
 }
 
 /// Phase of a grating at a place and time 0, in turns.

@@ -26,14 +26,12 @@ use frixel_layers::{Blend, Click, Interval, Layer as Record, Region as RecordReg
 
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::grammar::AmountFields;
 use crate::layer::{Layer, LowHigh, Region, Unit};
 use crate::log::Log;
 use crate::lower::Lowering;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
-use crate::tables::{HIGH, LOW};
 
 pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM};
 
@@ -50,8 +48,6 @@ pub(crate) trait LayerFields: Sized {
     const NEEDS_RIM: bool = false;
     /// Whether frictions of a layer that replaces others default to totals.
     const TOTALS: bool = false;
-    /// The amounts of the kind, in the order of [`IntoField::amounts`].
-    const AMOUNTS: &'static [AmountFields] = &[LOW, HIGH];
 
     /// Reads the fields of the kind.
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self>;
@@ -175,9 +171,6 @@ pub(crate) trait IntoField: Copy {
     fn without_place(self) -> Self {
         self
     }
-
-    /// The amounts that fields of the layer set: electric friction in newtons, or factors.
-    fn amounts(&mut self) -> Vec<&mut f32>;
 }
 
 /// The values of the field `kind` of a layer.
@@ -260,11 +253,6 @@ macro_rules! kinds {
                 match self { $( Self::$kind(kind) => LayerFields::clicked(kind, places, record), )* }
             }
 
-            /// The amounts of the kind, in the order of [`amounts`].
-            pub(crate) fn amounts(&self) -> &'static [AmountFields] {
-                match self { $( Self::$kind(_) => <$module::$kind>::AMOUNTS, )* }
-            }
-
             /// Moves the places in the kind's own fields.
             pub(crate) fn move_by(&mut self, x_mm: f64, y_mm: f64) {
                 match self { $( Self::$kind(kind) => LayerFields::move_by(kind, x_mm, y_mm), )* }
@@ -280,13 +268,6 @@ macro_rules! kinds {
         pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
             match layer {
                 $( Record::$kind(layer) => IntoField::field(layer, region, program), )*
-            }
-        }
-
-        /// The amounts that fields of a record's layer set: electric friction in newtons, or factors.
-        pub(crate) fn amounts(layer: &mut Record) -> Vec<&mut f32> {
-            match layer {
-                $( Record::$kind(layer) => IntoField::amounts(layer), )*
             }
         }
 

@@ -90,10 +90,6 @@ impl IntoField for Record {
         let (low_n, high_n) = (f64::from(self.low_n), f64::from(self.high_n));
         Arc::new(NoiseField { waves: waves.collect(), wavelength_min_m, low_n, high_n })
     }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.low_n, &mut self.high_n]
-    }
 }
 
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use frixel_wire::scene::CURVE_POINTS_MAX;
 use super::{Field, IntoField, LayerFields, Lowered};
 use crate::fields::Fields;
 use crate::grammar::Absence::Mistake as Required;
-use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
+use crate::grammar::{FieldSpec, Holds, Range};
 use crate::layer::{Layer, Unit};
 use crate::log::Log;
 use crate::lower::{Lowering, MM};
@@ -44,7 +44,6 @@ impl LayerFields for Speed {
     const WORD: &'static str = "speed";
     const BLENDS: &'static [(&'static str, Blend)] = &[("multiply", Blend::Multiply)];
     const BLEND: Blend = Blend::Multiply;
-    const AMOUNTS: &'static [AmountFields] = &[];
 
     fn read(fields: &mut Fields, _unit: Unit, log: &mut Log) -> Option<Self> {
         let (offset, factors_offset) = (fields.place(SPEEDS.name), fields.place(FACTORS.name));
@@ -81,10 +80,6 @@ impl IntoField for Record {
     fn field(&self, _region: RecordRegion, program: &Program) -> Arc<dyn Field> {
         let own = program.points.iter().skip(usize::from(self.first)).take(usize::from(self.count));
         Arc::new(SpeedField(own.map(|point| (f64::from(point.x), f64::from(point.y))).collect()))
-    }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        Vec::new()
     }
 }
 

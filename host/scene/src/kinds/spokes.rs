@@ -95,10 +95,6 @@ impl IntoField for Record {
     fn without_place(self) -> Self {
         Self { x_m: 0.0, y_m: 0.0, phase_turns: 0.0, ..self }
     }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.trough_n, &mut self.crest_n]
-    }
 }
 
 #[derive(Debug)]

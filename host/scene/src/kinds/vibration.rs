@@ -124,10 +124,6 @@ impl IntoField for Record {
     fn field(&self, _region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
         Arc::new(*self)
     }
-
-    fn amounts(&mut self) -> Vec<&mut f32> {
-        vec![&mut self.low_n, &mut self.high_n]
-    }
 }
 
 impl Field for Record {

@@ -169,7 +169,7 @@ impl ReferenceLayer {
         self.blend == Blend::Replace && !self.is_streamed
     }
 
-    pub(crate) fn new(record: &Record, program: &Program) -> Self {
+    fn new(record: &Record, program: &Program) -> Self {
         let shape = Shape::new(record.region, &program.points);
         let field = kinds::field(&record.layer, record.region, program);
         let Interval { low, high } = record.layer.bounds(&program.points);

@@ -111,21 +111,6 @@ fn the_nearest_default_counts_and_of_several_files_the_last_one() {
 }
 
 #[test]
-fn a_layer_knows_of_defaults_in_a_file_that_its_own_includes() {
-    let flat = "version = 1\ninclude = [\"parts/b.toml\"]\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
-    let defaults = "version = 1\n[defaults]\ngain = 0.5\n";
-    let (bare, further) = ("version = 1\n", "version = 1\ninclude = [\"../c.toml\"]\n");
-    let has_other = |part: &str, beside: &str| {
-        let scene = scene(flat, &[("parts/b.toml", part), ("c.toml", beside)]).expect("it reads");
-        scene.layer_tables().iter().map(|table| table.has_other_defaults).collect::<Vec<_>>()
-    };
-    assert_eq!(has_other(defaults, bare), [true]);
-    assert_eq!(has_other(further, defaults), [true]);
-    assert_eq!(has_other(further, bare), [false]);
-    assert_eq!(has_other(bare, defaults), [false], "a file that is not included");
-}
-
-#[test]
 fn names_of_files_start_from_the_folder_of_the_file_they_stand_in() {
     let picture = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = \"../textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
         width_mm = 20\n";

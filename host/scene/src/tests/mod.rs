@@ -8,7 +8,6 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Diagnostic, Program, Scene, compile, compile_draft};
 
-mod amount_reach;
 mod bounds;
 mod corpus;
 mod cures;

@@ -60,10 +60,6 @@ export type Layer = {
   gainMax: number;
   /** The gains with which the drive can give all that the layer asks for; null where it is not live, or with none. */
   gainReach: [number, number] | null;
-  /** Likewise of each field of an amount in newtons or as a fraction that the file has; empty before a check. */
-  amountReach: Record<string, [number, number]>;
-  /** Whether a file that its own includes has `[defaults]`, which count for it, too. */
-  hasOtherDefaults: boolean;
   /** Names of its copies in control lines. */
   controls: string[];
   file?: string;

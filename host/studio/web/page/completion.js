@@ -265,15 +265,6 @@ function kindOf(root, { schemas }) {
 }
 
 /**
- * The fields of the table that a field holds.
- * @param {Schema} schema
- * @param {Field} field
- */
-export function innerFields(schema, { schemas }) {
-  return merged(schema, schemas, {});
-}
-
-/**
  * The fields that a layer with these words may have.
  * @param {Schema} schema
  * @param {Record<string, string>} words

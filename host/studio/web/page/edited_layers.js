@@ -24,6 +24,11 @@ export class EditedLayers {
    * @type {Map<string | undefined, string>}
    */
   #texts = new Map();
+  /**
+   * Files that include one with defaults.
+   * @type {Set<string | undefined>}
+   */
+  #withOtherDefaults = new Set();
 
   /** @param {Editor} editor */
   constructor(editor) {
@@ -82,6 +87,8 @@ export class EditedLayers {
     this.#texts = texts;
     this.screen = screen;
     const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text)]));
+    const withDefaults = [...parsed].filter(([file, toml]) => includesDefaults(toml, file ?? entry, files));
+    this.#withOtherDefaults = new Set(withDefaults.map(([file]) => file));
     this.all = layers.map((layer) => {
       const toml = parsed.get(layer.file);
       return this.#describe(layer, toml, toml?.layerAt(layer.from[0]));
@@ -98,7 +105,7 @@ export class EditedLayers {
   #describe(layer, toml, at) {
     const { file, index } = layer;
     if (toml && at !== undefined) {
-      const place = placeOf(toml, at, layer, this.screen);
+      const place = placeOf(toml, at, layer, this.screen, this.#withOtherDefaults.has(file));
       return { key: `${file ?? ""} ${at}`, layer, at, toml, place };
     }
     const why = toml
@@ -238,6 +245,38 @@ function unnamedWordsOf(edited) {
 function countOf(edited) {
   const layers = edited?.toml?.value(["layer"]);
   return Array.isArray(layers) ? layers.length : 0;
+}
+
+/**
+ * @param {TomlText} toml
+ * @param {string} file Its name.
+ * @param {Files} files
+ * @returns {boolean}
+ */
+function includesDefaults(toml, file, files) {
+  const names = toml.value(["include"]);
+  return Array.isArray(names) && names.some((each) => {
+    const name = joined(file, String(each));
+    const content = files[name];
+    if (content === undefined) return false;
+    const included = new TomlText(typeof content === "string" ? content : new TextDecoder().decode(content));
+    return included.value(["defaults"]) !== undefined || includesDefaults(included, name, files);
+  });
+}
+
+/**
+ * The path of a file that another one calls `name`.
+ * @param {string} file
+ * @param {string} name
+ */
+function joined(file, name) {
+  /** @type {string[]} */
+  const parts = [];
+  for (const part of [...file.split("/").slice(0, -1), ...name.split("/")]) {
+    if (part === ".." && parts.length > 0 && parts[parts.length - 1] !== "..") parts.pop();
+    else if (part !== "" && part !== ".") parts.push(part);
+  }
+  return parts.join("/");
 }
 
 /**

@@ -9,7 +9,7 @@ import { PanelCover } from "./panel_cover.js";
 
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
-/** @import { Scale } from "./felt.js" */
+/** @import { Most } from "./layer_numbers.js" */
 /** @import { Area, FrictionMap } from "./map.js" */
 
 export class HandsView {
@@ -21,7 +21,7 @@ export class HandsView {
   panel = new LayerPanel();
   #cover;
   /** What can be felt of the scene, as its check said. */
-  reach = /** @type {Scale} */ ({ naturalN: 0.25, reachN: 0.38 });
+  reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
 
   /**
    * @param {FrictionMap} map
@@ -69,9 +69,9 @@ export class HandsView {
   #tuned(selected, { screen }) {
     const { toml, at, layer } = selected;
     if (!toml || at === undefined) return { numbers: [], choices: [] };
-    const numbers = layerNumbers(this.#schema, toml, at, layer);
+    const numbers = layerNumbers(this.#schema, toml, at, layer.kind, this.reach);
     const choices = layerChoices(this.#schema, toml, at, layer.kind);
-    return { numbers: [...numbers, ...repeatNumbers(this.#schema, selected, screen)], choices };
+    return { numbers: [...numbers, ...repeatNumbers(selected, screen)], choices };
   }
 
   /** Gives the focus to a layer, or to what is around the layers. @param {string | undefined} key */

@@ -60,7 +60,7 @@ export class LayerEdits {
     const own = copied.value(["layer", at + 1, "name"]);
     const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;
-    const to = placeOf(copied, at + 1, layer, screen);
+    const to = placeOf(copied, at + 1, layer, screen, false);
     const all = bounds(place.box, place.copies);
     const isMoved = !place.whyNotMoved;
     const dx = isMoved ? aside(all.x, screen.widthMm - all.x - all.width) : 0;
@@ -159,8 +159,6 @@ function newLayer(name, kind, boxMm) {
     gainMin: 0,
     gainMax: 1,
     gainReach: null,
-    amountReach: {},
-    hasOtherDefaults: false,
     controls: [],
     from: [1, 1],
     boxMm,

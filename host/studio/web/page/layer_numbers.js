@@ -1,12 +1,13 @@
 // The numbers of a layer that a hand tunes: which they are, what they are called, and how far a slider goes.
 // @ts-check
 
-import { innerFields, layerFields } from "./completion.js";
+import { layerFields } from "./completion.js";
 
-/** @import { Layer, Screen } from "../engine/types" */
+/** @import { Reach, Screen } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
 /** @import { Path, TomlText } from "./toml_text.js" */
+/** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
 /**
  * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `limit` the most
  * that the drive can give, where there is one; `min` and `max` are what a scene may have.
@@ -54,6 +55,7 @@ const REPEATS = [
   ["columns", "dx_mm", "x", "width", "copies side by side"],
   ["rows", "dy_mm", "y", "height", "copies below one another"],
 ];
+const COPIES_MAX = 64;
 /** A copy that ends at the screen's border fits in spite of its rounding. */
 const CLOSE = 1e-6;
 /** Ends of sliders, times a power of ten. */
@@ -75,13 +77,16 @@ const UNITS = [
  * @param {Schema} schema
  * @param {TomlText} toml
  * @param {number} at Number of the layer among those of the file.
- * @param {Layer} layer As its last check saw it.
+ * @param {string} kind
+ * @param {Most} reach
  * @returns {LayerNumber[]}
  */
-export function layerNumbers(schema, toml, at, { kind, amountReach }) {
+export function layerNumbers(schema, toml, at, kind, reach) {
   const own = (/** @type {string} */ field) => toml.value(["layer", at, field]) ?? toml.value(["defaults", field]);
   const blend = own("blend");
   const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
+  const isPlate = kind === "constant" && (blend ?? "replace") === "replace";
+  const isTotal = own("above") === "zero" || (isPlate && own("above") !== "natural");
   return namesOf(toml, at, fields).flatMap((field) => {
     const about = fields[field];
     const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
@@ -92,14 +97,15 @@ export function layerNumbers(schema, toml, at, { kind, amountReach }) {
     if (typeof value !== "number" || !Number.isFinite(value) || isPlace || !isNumber) return [];
     const isWhole = about.type === "integer" || field === "number" || field === "seed";
     const { minimum: min = -1e6, maximum: max = 1e6 } = about;
-    const reach = amountReach[field];
-    const [least, most] = reach ? [value < 0 ? reach[0] : Math.max(0, reach[0]), reach[1]] : ends(unit, label, value);
+    // A click counts from what it is added to.
+    const [least, most] = ends(field, unit, value, isTotal && !field.startsWith("click"), reach);
     const name = LABELS[field] ?? label.replaceAll("_", " ");
+    const isLimited = unit === "N" || unit === "of reach";
     return {
       field,
       label: name,
       words: NUMBER_MEANINGS[name] ?? "",
-      ...(reach && { limit: reach[1] }),
+      ...(isLimited && most > 0 && { limit: most }),
       unit: field === "gain" ? "×" : unit,
       value,
       path: ["layer", at, field],
@@ -151,22 +157,19 @@ function namesOf(toml, at, fields) {
 
 /**
  * How many copies a layer has side by side and below one another, as far as the screen has room for more.
- * @param {Schema} schema
  * @param {EditedLayer} edited
  * @param {Screen} screen
  * @returns {LayerNumber[]}
  */
-export function repeatNumbers(schema, { toml, at, layer: { kind }, place: { box } }, screen) {
+export function repeatNumbers({ toml, at, place: { box } }, screen) {
   if (at === undefined) return [];
-  const fields = innerFields(schema, layerFields(schema, { kind }).repeat);
   return REPEATS.flatMap(([name, step, side, along, words]) => {
     const path = ["layer", at, "repeat", name];
     const [value, stepMm] = [toml?.value(path), toml?.value(["layer", at, "repeat", step])];
     if (typeof value !== "number" || typeof stepMm !== "number" || stepMm === 0) return [];
-    const { minimum: min = 1, maximum: max = 1 } = fields[name];
     const room = stepMm > 0 ? screen[`${along}Mm`] - box[side] - box[along] : box[side];
-    const most = Math.max(value, 1, Math.min(max, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
-    const whole = { decimals: 0, step: 1, least: 1, most, min, max };
+    const most = Math.max(value, 1, Math.min(COPIES_MAX, 1 + Math.floor(room / Math.abs(stepMm) + CLOSE)));
+    const whole = { decimals: 0, step: 1, least: 1, most, min: 1, max: COPIES_MAX };
     return [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }];
   });
 }
@@ -180,18 +183,20 @@ function stemOf(field) {
 }
 
 /**
- * The ends of a slider: what is used every day.
+ * The ends of a slider: what is used every day, and no more friction than the drive can add.
+ * @param {string} field
  * @param {string} unit
- * @param {string} label
  * @param {number} value
+ * @param {boolean} isTotal Whether newtons count from zero, not from natural friction.
+ * @param {Most} reach
  * @returns {[number, number]}
  */
-function ends(unit, label, value) {
+function ends(field, unit, value, isTotal, { naturalN, reachN }) {
   switch (unit) {
     case "N":
+      return isTotal ? [naturalN, reachN] : [value < 0 ? naturalN - reachN : 0, reachN - naturalN];
     case "of reach":
-      // Until a check says how far the drive reaches.
-      return [0, unit === "N" ? value : 1];
+      return [value < 0 ? -1 : 0, 1];
     case "×":
       return [0, roundAbove(2, value)];
     case "°":
@@ -205,8 +210,8 @@ function ends(unit, label, value) {
     case "ms":
       return [1, roundAbove(100, value)];
     default:
-      if (label === "duty") return [0, 1];
-      return [0, roundAbove(label === "gain" ? 2 : 40, value)];
+      if (field === "duty") return [0, 1];
+      return [0, field === "gain" ? roundAbove(2, value) : roundAbove(40, value)];
   }
 }
 

@@ -10,8 +10,7 @@ import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { Scale } from "./felt.js" */
-/** @import { LayerChoice, LayerNumber } from "./layer_numbers.js" */
+/** @import { LayerChoice, LayerNumber, Most } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
 
 /** @type {[Side, string][]} */
@@ -100,7 +99,7 @@ export class LayerPanel {
   /**
    * @param {EditedLayer} edited
    * @param {{ numbers: LayerNumber[], choices: LayerChoice[] }} tuned
-   * @param {Scale} reach
+   * @param {Most} reach That the ends of the sliders are for.
    * @param {boolean} isNew Whether another layer was selected before.
    */
   show(edited, { numbers, choices }, reach, isNew) {
@@ -109,7 +108,7 @@ export class LayerPanel {
     // While a layer is selected, its rows stay in their order.
     const fields = [...numbers, ...choices].map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
-    const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields]);
+    const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields, reach.naturalN, reach.reachN]);
     if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
     const isOther = madeFor !== this.#madeFor;
     if (isOther) this.#make(edited, numbers, choices);
@@ -146,7 +145,7 @@ export class LayerPanel {
   /**
    * Says whether the layer is felt, as the last check of the scene found.
    * @param {Layer} layer
-   * @param {Scale} reach
+   * @param {Most} reach
    */
   #showFelt(layer, reach) {
     const { felt, perceived, index } = layer;

@@ -30,16 +30,18 @@ export class NumberRow {
    * @param {string} layer
    */
   constructor(number, layer) {
-    const { label, unit, min, max, step, words } = number;
+    const { label, unit, min, max, step, limit, words } = number;
     this.#number = number;
     this.#slider = element("input", { type: "range", step: "any" });
     this.#input = element("input", { type: "number", min, max, step });
     this.nameLayer(layer);
-    this.#track = element("span", { className: "slider" }, this.#slider);
+    this.#track = element("span", { className: limit === undefined ? "slider" : "slider has-limit" }, this.#slider);
+    this.#showEnds();
+    const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`;
+    const title = [words, reach].filter(Boolean).join("; ");
     const said = element("span", {}, label, element("small", {}, words));
     const behind = element("span", {}, unit);
-    this.element = element("div", { className: "layer-number" }, said, this.#track, this.#input, behind);
-    this.#showEnds();
+    this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, behind);
     this.#listen();
   }
 
@@ -108,9 +110,9 @@ export class NumberRow {
    * Shows what the text has now. While the slider is dragged its ends stay, unless the number lies beyond them.
    * @param {LayerNumber} number
    */
-  show({ value, path, least, most, limit }) {
+  show({ value, path, least, most }) {
     const before = this.#number;
-    this.#number = { ...before, value, path, least, most, limit };
+    this.#number = { ...before, value, path, least, most };
     if (this.#isDragged) {
       this.#number.least = Math.min(before.least, least);
       this.#number.most = Math.max(before.most, most);
@@ -121,11 +123,8 @@ export class NumberRow {
   }
 
   #showEnds() {
-    const { least, most, limit, unit, words } = this.#number;
+    const { least, most, limit } = this.#number;
     Object.assign(this.#slider, { min: String(least), max: String(most) });
-    const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, this.#number), 4)} ${unit}`;
-    this.element.title = [words, reach].filter(Boolean).join("; ");
-    this.#track.classList.toggle("has-limit", limit !== undefined);
     if (limit !== undefined) this.#track.style.setProperty("--limit", String((limit - least) / (most - least)));
   }
 }

@@ -176,11 +176,14 @@ export class PlaceReader {
     return [...this.#steps(this.#pathOf("repeat")), ...lengths.map((length) => length?.mm)].some(Number.isNaN);
   }
 
-  /** Why the layer can neither be moved nor resized, or "". */
-  whyNot() {
+  /**
+   * Why the layer can neither be moved nor resized, or "".
+   * @param {boolean} hasOtherDefaults
+   */
+  whyNot(hasOtherDefaults) {
     const isPlaced = PLACED.includes(this.#kind) && this.#kind !== "bitmap";
     const hasAll = (this.layer.boxMm === null || this.hasRegion) && (!isPlaced || this.anchors.length === 2);
-    if (!hasAll && this.layer.hasOtherDefaults) return FROM_OTHER_DEFAULTS;
+    if (!hasAll && hasOtherDefaults) return FROM_OTHER_DEFAULTS;
     if (this.#isInForeignPixels)
       return "This layer is placed in pixels of a design in another file: change it in the text.";
     return "";
