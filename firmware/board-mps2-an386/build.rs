@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-cfg=an505");
     }
     fs::copy(if is_an505 { "an505.x" } else { "an386.x" }, out.join("memory.x"))?;
-    // cortex-m-rt requires a file with the names of optional interrupt handlers; there are none.
+    // cortex-m-rt requires this file. It is empty, because no interrupt handler is optional.
     fs::write(out.join("device.x"), "")?;
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-bins=-Tlink.x");

@@ -92,7 +92,7 @@ fn mean(class: &Class, speed_mm_s: f64, seeds: &Seeds) -> FidelityMean {
     FidelityMean::of(&seeds.clone().map(play).collect::<Vec<_>>()).unwrap()
 }
 
-/// What is felt in each of [`CASES`], with the goal that is held there.
+/// Fidelity in each of [`CASES`], with its goal.
 fn cases(seeds: &Seeds) -> Vec<(Class, f64, Goal, FidelityMean)> {
     let found = CASES.map(|(class, speed_mm_s, goal)| (class, speed_mm_s, goal, mean(&class, speed_mm_s, seeds)));
     found.into()

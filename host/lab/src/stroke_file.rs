@@ -44,9 +44,9 @@ pub enum StrokeFileError {
         row: u64,
         /// The name of its column.
         column: &'static str,
-        /// What was found, and what is expected.
+        /// The value that was found, and the expected one.
         reason: String,
-        /// What may help besides where the numbers are those of a file.
+        /// Further advice, for numbers of a file.
         if_in_file: &'static str,
     },
     /// The rows do not describe a stroke of a finger.

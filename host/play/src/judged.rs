@@ -1,4 +1,4 @@
-//! What the simulated board needs for a program, and what a person feels of it.
+//! Costs of a program on the simulated board, and the judgement of its layers.
 
 use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::check::BoardCosts;

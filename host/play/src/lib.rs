@@ -38,6 +38,6 @@ pub use judged::{board_costs, judge, judged_rig};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;
-pub use rig_stream::RigStream;
+pub use rig_stream::{RigStream, ticks_spanning};
 pub use simulation::{SimPlayer, Simulated, Simulation, SimulationError, simulate, simulate_by};
 pub use upload::{load, start};

@@ -66,8 +66,7 @@ impl<'a, R: BoardRig> RigStream<'a, R> {
     }
 
     fn ticks(&self, time: Duration) -> u64 {
-        // A time that is above a whole number of ticks by rounding alone is that number.
-        (time.as_secs_f64() * f64::from(self.rig.board().tick_hz) - 1e-6).ceil().max(0.0) as u64
+        ticks_spanning(time.as_secs_f64(), self.rig.board().tick_hz)
     }
 
     fn closed(&self, error: &RigError) -> LinkClosed {
@@ -99,6 +98,12 @@ impl<'a, R: BoardRig> RigStream<'a, R> {
             }
         }
     }
+}
+
+/// Number of ticks that cover a time in seconds. A time that is above a whole number of ticks by rounding alone is that
+/// number.
+pub fn ticks_spanning(time_s: f64, tick_hz: u32) -> u64 {
+    (time_s * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64
 }
 
 impl Record<'_> {

@@ -83,7 +83,7 @@ impl Simulation {
         Ok(world)
     }
 
-    /// What records the play of `program`, until the last tick.
+    /// The recorder of a play of `program`, until the last tick.
     pub fn recorder(&self, program: &Program) -> Result<Recorder, PlayError> {
         let board = &self.rig.board;
         let ticks = (self.seconds * f64::from(board.tick_hz)).round() as u64;

@@ -18,7 +18,7 @@ use std::fmt::{self, Display};
 use frixel_hil_sim::{
     Board, BoardMemory, BoardRig, Point, RigConfig, RigError, Stroke, StrokeError, World, WorldOptions,
 };
-use frixel_play::{Simulation, SimulationError};
+use frixel_play::{Simulation, SimulationError, ticks_spanning};
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
 
@@ -159,8 +159,7 @@ pub fn run_in_process(
 
 /// A time in ticks of a board: the next whole number of them.
 fn ticks_of(ms: f64, tick_hz: u32) -> u64 {
-    // A time that is above a whole number of ticks by rounding alone is that number.
-    (1e-3 * ms * f64::from(tick_hz) - 1e-6).ceil().max(0.0) as u64
+    ticks_spanning(1e-3 * ms, tick_hz)
 }
 
 /// Runs a scenario on a rig, in the [`world`] of the scenario.

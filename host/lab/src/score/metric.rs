@@ -73,7 +73,7 @@ pub struct MetricScore {
     pub interval: Option<[f64; 2]>,
     /// Perception threshold; absent where it is unknown.
     pub human: Option<Human>,
-    /// Goal for a display; absent where there is none.
+    /// Goal for a display, if there is one.
     pub goal: Option<GoalBound>,
 }
 

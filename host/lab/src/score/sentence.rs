@@ -180,7 +180,8 @@ mod tests {
         );
         assert_eq!(
             score(8, bars(7, [3, 0]), Vec::new()).sentence(),
-            "none of 2 layers is noticed by all 8 simulated fingers: layer 1 \"bar 1\" by 3 of 7, layer 2 \"bar 2\" by 0 of 7"
+            "none of 2 layers is noticed by all 8 simulated fingers: layer 1 \"bar 1\" by 3 of 7, \
+             layer 2 \"bar 2\" by 0 of 7"
         );
     }
 
@@ -246,7 +247,8 @@ mod tests {
         let key = |copy| layer(title(1, Some(copy), &format!("key {copy}")), verdicts(4, copy % 3, 0));
         assert_eq!(
             score(4, (1..=30).map(key).collect(), Vec::new()).sentence(),
-            "none of 30 layers is noticed by all 4 simulated fingers: layer 1.3 \"key 3\" with 29 more copies by 0 at least"
+            "none of 30 layers is noticed by all 4 simulated fingers: layer 1.3 \"key 3\" with 29 more copies \
+             by 0 at least"
         );
         let bar = |table| layer(title(table, None, "bar"), verdicts(4, 1, 0));
         let sentence = score(4, (1..=37).map(bar).collect(), Vec::new()).sentence();

@@ -65,30 +65,24 @@ pub struct Plan {
     pub parameters: BTreeMap<String, Values>,
 }
 
-/// The fields of a plan: first those that it cannot do without.
-const FIELDS: [&str; 11] = [
-    "scenes",
-    "people",
-    "screens",
-    "touch",
-    "stroke",
-    "strokes",
-    "seeds",
-    "seconds",
-    "median_speed_mm_per_s",
-    "ideal",
-    "parameters",
-];
-/// How many of them these are.
-const NEEDED: usize = 2;
+/// Required fields of a plan.
+const REQUIRED: [&str; 2] = ["scenes", "people"];
+/// Optional fields of a plan.
+const OPTIONAL: [&str; 9] =
+    ["screens", "touch", "stroke", "strokes", "seeds", "seconds", "median_speed_mm_per_s", "ideal", "parameters"];
+
+/// The names of all fields of a plan.
+fn fields() -> impl Iterator<Item = &'static str> {
+    REQUIRED.into_iter().chain(OPTIONAL)
+}
 
 /// Refuses a plan with an unknown field, without a needed one, or with values that are neither a list nor a range.
 fn check_names(plan: &toml::Table, name: &str) -> Result<(), PlanError> {
-    if let Some(unknown) = plan.keys().find(|key| !FIELDS.contains(&key.as_str())) {
-        let nearest = Nearest::new(unknown, FIELDS);
+    if let Some(unknown) = plan.keys().find(|key| !fields().any(|field| field == key.as_str())) {
+        let nearest = Nearest::new(unknown, fields());
         return Err(PlanError(format!("{name}: the plan has no field `{}`: {nearest}", brief(unknown))));
     }
-    if let Some(needed) = FIELDS.iter().take(NEEDED).find(|needed| !plan.contains_key(**needed)) {
+    if let Some(needed) = REQUIRED.iter().find(|field| !plan.contains_key(**field)) {
         return Err(PlanError(format!("{name}: the plan lacks `{needed}`")));
     }
     let parameters = plan.get("parameters").and_then(toml::Value::as_table);
@@ -336,5 +330,18 @@ mod tests {
             let error = plan(&rest).unwrap_err().to_string();
             assert!(error.contains(says) && error.len() < 1_000, "{says}: {error}");
         }
+    }
+
+    /// The names are those of the fields that serde reads.
+    #[test]
+    fn the_fields_are_those_of_a_plan() {
+        let error = toml::from_str::<Plan>("x = 1").unwrap_err().to_string();
+        let (_, expected) = error.split_once("expected one of ").unwrap();
+        let mut read: Vec<&str> =
+            expected.lines().next().unwrap().split(", ").map(|name| name.trim_matches('`')).collect();
+        let mut named: Vec<&str> = fields().collect();
+        read.sort_unstable();
+        named.sort_unstable();
+        assert_eq!(named, read);
     }
 }
