@@ -47,7 +47,7 @@ impl Ending {
     /// Causes it now.
     fn happen(self, rig: &mut PicoRig, seed: u32) {
         match self {
-            Self::Panic => assert!(rig.jump_to("boot5never").unwrap(), "the image has a function that panics"),
+            Self::Panic => assert!(rig.jump_to("unreachable_state").unwrap(), "the image has a function that panics"),
             Self::HardFault => rig.jump(0x3000_0000).unwrap(),
             Self::Hang => rig.hang().unwrap(),
             Self::HangingMainLoop => rig.hang_main_loop().unwrap(),
