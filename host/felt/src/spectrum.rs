@@ -2,9 +2,11 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::sync::Arc;
 
-use rustfft::FftPlannerScalar;
+use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 
 /// The spectrum of a signal.
 #[derive(Clone, Debug)]
@@ -50,7 +52,7 @@ impl Spectrum {
     /// `scale` compensates for the power lost in a window.
     fn transform(signal: impl Iterator<Item = f64>, count: usize, sample_hz: f64, scale: f64) -> Self {
         let mut bins: Vec<Complex<f64>> = signal.map(|sample| Complex::new(sample, 0.0)).collect();
-        FftPlannerScalar::new().plan_fft_forward(count).process(&mut bins);
+        transform(&mut bins);
         bins.truncate(count / 2);
         // Each frequency has a negative counterpart.
         let scale = (2.0 * scale).sqrt() / count.max(1) as f64;
@@ -74,6 +76,16 @@ impl Spectrum {
     /// Mean square at each frequency.
     pub(crate) fn power(&self) -> Vec<f64> {
         self.bins.iter().map(Complex::norm_sqr).collect()
+    }
+}
+
+/// Replaces a signal of any length by its discrete Fourier transform.
+///
+/// Bluestein's algorithm needs transforms of a power of two only. A planner would bring every algorithm into the page.
+fn transform(signal: &mut [Complex<f64>]) {
+    if let Some(longer) = (2 * signal.len()).checked_next_power_of_two().filter(|_| !signal.is_empty()) {
+        let radix4 = Arc::new(Radix4::new(longer, FftDirection::Forward));
+        BluesteinsAlgorithm::new(signal.len(), radix4).process(signal);
     }
 }
 
