@@ -252,13 +252,6 @@ impl<'i> Fields<'i> {
         value.map_or(self.places.table(), |value| value.span().start)
     }
 
-    /// Removes an obsolete field, and reports it if the file has it.
-    pub(super) fn refuse(&mut self, log: &mut Log, field: &str, mistake: FieldMistake) {
-        if let Some((name, _)) = self.values.remove_entry(field) {
-            log.add(name.span().start, mistake);
-        }
-    }
-
     /// Reports a mistake if the file lacks a field.
     pub(super) fn require(&mut self, field: &FieldSpec) {
         self.required.push(field.name);

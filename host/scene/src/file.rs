@@ -14,7 +14,7 @@ use super::grammar::KnownTable;
 use super::include::{self, Gathered};
 use super::layer::Layer;
 use super::log::Log;
-use super::mistake::{FieldMistake, FileMistake};
+use super::mistake::FileMistake;
 use super::pool::PictureBytes;
 use super::scene_profiles::{self, ProfileSource, Profiles};
 use super::screen::Screen;
@@ -306,7 +306,6 @@ fn drive(mut fields: Fields, log: &mut Log) -> Drive {
     let voltage_max_v_peak = fields.number(log, &tables::drive::VOLTAGE_MAX_V_PEAK);
     let slew_v_per_us = fields.number_or_default(log, &tables::drive::SLEW_V_PER_US);
     let host_timeout_ms = fields.number_or_default(log, &tables::drive::HOST_TIMEOUT_MS);
-    fields.refuse(log, "autonomous", FieldMistake::Autonomous);
     let saturate = fields.flag(log, &tables::drive::SATURATE);
     let places = fields.close(log);
     Drive { voltage_max_v_rms, voltage_max_v_peak, slew_v_per_us, host_timeout_ms, saturate, places }

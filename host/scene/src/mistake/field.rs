@@ -20,9 +20,6 @@ pub enum FieldMistake {
         /// The known names, and the nearest one.
         nearest: Nearest,
     },
-    /// A scene asks to play without a host.
-    #[error("a scene plays only while its host is connected: delete this line")]
-    Autonomous,
     /// Fields that belong to another table.
     #[error("{} in {table} belong{} {home}: write {write}", listed(.fields), if .fields.len() == 1 { "s" } else { "" })]
     Misplaced {

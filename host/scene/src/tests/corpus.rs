@@ -73,7 +73,7 @@ macro_rules! variants {
     };
 }
 
-variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Autonomous Misplaced MissingField MissingPlace
+variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced MissingField MissingPlace
     BundledFinger WrongType QuotedNumber NotATable NotTables OutOfRange TooLong UnknownChoice NoDefault NoDesign
     LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
