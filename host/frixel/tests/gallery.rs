@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use frixel::output::draw_preview_png;
 use frixel::scene_file;
 use frixel_felt::Preview;
-use frixel_felt::judge::{weber_steps, weber_steps_safe};
+use frixel_felt::judge::{Advice, LayerVerdict, Verdict};
 use frixel_felt::recorder::FeltRow;
-use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke};
+use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke, WorldOptions};
 use frixel_lab::simulate::default_stroke;
 use frixel_layers::{Header, Scene as WireScene};
-use frixel_play::{Simulation, TO_THE_END, simulate};
+use frixel_play::{Simulation, TO_THE_END, judge, simulate};
 use frixel_scene::reference::{Context, Reference, direction_of};
 use frixel_scene::{FingerProfile, Profile, Program, Scene, TargetRange, compile};
 use frixel_testkit::golden;
@@ -68,32 +68,23 @@ impl Entry {
         format!("{} {}", self.headline(), paragraph(last.into_iter()))
     }
 
-    /// Contrast of the reference friction on the default stroke under a bundled finger, from the 5th to the 95th
-    /// percentile while the finger slides, in Weber steps.
-    fn contrast_steps(&self, finger: &str) -> f64 {
+    /// What the judge says of the layers under a bundled finger.
+    fn judged(&self, finger: &str) -> Vec<LayerVerdict> {
         let rig = RigConfig::default();
         let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger);
         let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)
             .unwrap_or_else(|error| panic!("under the {finger} finger: {error}"));
-        let stroke = default_stroke(&program, None).unwrap();
-        let simulation =
-            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40, through_finger: false };
-        let simulated =
-            simulate(&program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{}: {error}", self.name));
-        let sliding = simulated.recorder.rows().iter().filter(|row| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
-        let mut reference_n: Vec<f64> = sliding.filter_map(|row| row.reference_n).collect();
-        reference_n.sort_by(f64::total_cmp);
-        let percentile_n = |percent: usize| reference_n[percent * (reference_n.len() - 1) / 100];
-        weber_steps(percentile_n(5), percentile_n(95))
+        judge(&program, &rig, &WorldOptions::default(), Advice::Omitted, TO_THE_END).unwrap().layers
     }
 }
 
-#[test]
-fn every_scene_has_contrast_that_is_felt() {
-    for entry in gallery() {
-        let steps = entry.contrast_steps("example");
-        assert!(steps >= weber_steps_safe(), "{}: {steps} Weber steps", entry.name);
-    }
+/// Number of layers by verdict, such as `3 felt, 1 maybe`.
+pub(crate) fn verdict_counts(layers: &[LayerVerdict]) -> String {
+    let counts = [Verdict::Felt, Verdict::Maybe, Verdict::NotFelt, Verdict::Unknown].map(|verdict| {
+        let count = layers.iter().filter(|layer| layer.verdict == verdict).count();
+        (count > 0).then(|| format!("{count} {}", verdict.words()))
+    });
+    counts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// A layer is touched if the reference friction at some place of the stroke is another without it.
@@ -253,10 +244,8 @@ fn page(gallery: &[Entry]) -> String {
                     main gallery`, and the same test plays every scene on the\nsimulator.\n"
         .to_owned();
     page.push_str(
-        "\n## Contrast\n\nFrom the 5th to the 95th percentile of friction on the stroke of `frixel play`, in Weber \
-         steps: factors of 1.11, about\nthe smallest step of friction that a finger feels. The goal is 2.3 under the \
-         example finger. All four fingers are\nassumed; [scenes.md](scenes.md#fingers-and-screens) has their \
-         numbers.\n\n| scene |",
+        "\n## What is felt\n\nThe verdicts of `frixel check` on the layers of each scene, under each bundled finger. \
+         All four fingers are assumed;\n[scenes.md](scenes.md#fingers-and-screens) has their numbers.\n\n| scene |",
     );
     for finger in FingerProfile::bundled_names() {
         let _ = write!(page, " {finger} |");
@@ -265,7 +254,10 @@ fn page(gallery: &[Entry]) -> String {
     for entry in gallery {
         let _ = write!(page, "| [{0}](#{0}) |", entry.name);
         for finger in FingerProfile::bundled_names() {
-            let _ = write!(page, " {:.1} |", entry.contrast_steps(finger));
+            let judged = entry.judged(finger);
+            let is_felt = finger != "example" || judged.iter().any(|layer| layer.verdict == Verdict::Felt);
+            assert!(is_felt, "nothing of {} is felt by the example finger", entry.name);
+            let _ = write!(page, " {} |", verdict_counts(&judged));
         }
         page.push('\n');
     }
