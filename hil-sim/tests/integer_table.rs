@@ -13,7 +13,7 @@ const EMULATOR: &str = "qemu-system-arm";
 const TARGET: &str = "thumbv7m-none-eabi";
 const IMAGE: &str = "integer-table";
 
-const FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const GAP_M: f64 = 1e-5;
 const VOLTAGE_MIN_V_RMS: f64 = 1.0;
 const VOLTAGE_MAX_V_RMS: f64 = 200.0;

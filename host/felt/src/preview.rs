@@ -156,7 +156,7 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
     ] {
         let percent = percent(parts_of_reach, side);
         if percent > 0.0 {
-            sentences.push(format!("{hatch}: {:.1} % of the screen asks for {what}.", percent.max(0.1)));
+            sentences.push(format!("{hatch}: {:.1} % of the map asks for {what}.", percent.max(0.1)));
         }
     }
     sentences

@@ -6,9 +6,9 @@ use std::fs;
 use std::path::Path;
 
 use frixel::scene_file;
-use frixel_felt::judge::{Advice, LayerVerdict, Verdict};
-use frixel_hil_sim::{Board, RigConfig, TouchConfig};
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_felt::judge::{Advice, LayerVerdict};
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_play::{TO_THE_END, judge};
 use frixel_scene::compile;
 use serde_json::Value;
 
@@ -18,8 +18,7 @@ use crate::processes::run;
 fn checked(path: &Path) -> Vec<LayerVerdict> {
     let rig = RigConfig::default();
     let program = compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz).unwrap();
-    let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-    judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers
+    judge(&program, &rig, &WorldOptions::default(), Advice::Omitted, TO_THE_END).unwrap().layers
 }
 
 /// Stripes under layers that start off: one replaces the stripes everywhere, and one comes in bursts.
@@ -66,13 +65,7 @@ fn a_check_and_a_score_agree() {
         assert_eq!(layers.len(), checked.len(), "{name}");
         for (layer, LayerVerdict { layer: title, verdict, .. }) in layers.iter().zip(&checked) {
             assert_eq!(layer["layer"], title.as_str());
-            let key = match verdict {
-                Verdict::Felt => "felt",
-                Verdict::NearThreshold => "felt_by_some",
-                Verdict::NotFelt => "not_felt",
-                Verdict::Unknown => "unknown",
-            };
-            assert_eq!(layer["simulated_fingers"][key], 1, "{name}: {layer}");
+            assert_eq!(layer["simulated_fingers"][verdict.key()], 1, "{name}: {layer}");
         }
     }
 }

@@ -6,14 +6,15 @@ use std::fs;
 use std::path::PathBuf;
 
 use frixel::scene_file::SceneFolder;
-use frixel_felt::judge::{Advice, Verdict, weber_steps};
-use frixel_hil_sim::{Board, TouchConfig};
+use frixel_felt::judge::{Advice, weber_steps};
+use frixel_hil_sim::{Board, RigConfig, WorldOptions};
 use frixel_model::TouchBound;
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_play::{TO_THE_END, judge};
 use frixel_scene::{FingerProfile, Profile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
+use crate::gallery::verdict_counts;
 use crate::processes::{repository, succeed};
 
 fn printed(args: &[&str]) -> String {
@@ -189,19 +190,10 @@ fn gallery() -> String {
     for path in paths {
         let scene = fs::read_to_string(&path).unwrap();
         let cells = drives.each_ref().map(|drive| {
-            let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
             let program = draft(&scene, "example", drive);
-            let judgement = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap();
-            let count = |verdict| judgement.layers.iter().filter(|layer| layer.verdict == verdict).count();
-            let counts = [
-                (Verdict::Felt, "felt"),
-                (Verdict::NearThreshold, "maybe"),
-                (Verdict::NotFelt, "not felt"),
-                (Verdict::Unknown, "unknown"),
-            ]
-            .map(|(verdict, word)| (count(verdict), word));
-            let said = counts.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}"));
-            said.collect::<Vec<_>>().join(", ")
+            let judgement =
+                judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END).unwrap();
+            verdict_counts(&judgement.layers)
         });
         let name = path.file_stem().unwrap().to_string_lossy();
         let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));

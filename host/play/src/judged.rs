@@ -3,7 +3,7 @@
 use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::check::BoardCosts;
 use frixel_felt::judge::{self, Advice, Judgement};
-use frixel_hil_sim::{Board, BoardMemory, Point, Rig, RigConfig, Stroke, TouchConfig, WorldOptions};
+use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke, WorldOptions};
 use frixel_scene::Program;
 
 use crate::{GoesOn, RigStream, Simulation, SimulationError, load, simulate};
@@ -11,28 +11,21 @@ use crate::{GoesOn, RigStream, Simulation, SimulationError, load, simulate};
 /// Random seed of the world, for every element and size.
 const SEED: u64 = 1;
 
-/// The rig on which programs are judged: a board in the realistic world with a touch source. It plays drafts.
-pub fn judged_rig(board: Board, touch: TouchConfig) -> RigConfig {
-    let world = WorldOptions { touch: Some(touch), ..WorldOptions::default() };
-    RigConfig::of(board).for_drafts().with(&world)
-}
-
 /// Judges what a person will feel of each layer of a program.
 ///
-/// The simulated board of `rig` plays [strokes](judge::strokes) in virtual time. When `goes_on` breaks, the plays end
-/// early.
+/// The simulated board of `rig` plays [strokes](judge::strokes) in `world` and in virtual time; it also plays drafts.
+/// When `goes_on` breaks, the judgement fails with [`SimulationError::Interrupted`].
 pub fn judge(
     program: &Program,
     rig: &RigConfig,
+    world: &WorldOptions,
     advice: Advice,
     goes_on: GoesOn<'_>,
 ) -> Result<Judgement, SimulationError> {
+    let rig = rig.for_drafts().with(world);
     judge::judge(program, advice, &mut |program, stroke| {
-        if goes_on().is_break() {
-            return Ok(Vec::new());
-        }
-        let simulation = Simulation::of_stroke(*rig, stroke.clone(), SEED);
-        Ok(simulate(program, &simulation, None, goes_on)?.samples())
+        let mut played = simulate(program, &Simulation::of_stroke(rig, stroke.clone(), SEED), None, goes_on)?;
+        if goes_on().is_break() { Err(SimulationError::Interrupted) } else { Ok(played.samples()) }
     })
 }
 

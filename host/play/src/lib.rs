@@ -34,7 +34,7 @@ pub use control::{Control, Next};
 pub use error::{PlayError, StopReason};
 pub use feed::{Feed, FeedError};
 pub use frixel_felt::{GoesOn, TO_THE_END, break_if};
-pub use judged::{board_costs, judge, judged_rig};
+pub use judged::{board_costs, judge};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;

@@ -60,6 +60,9 @@ pub enum SimulationError {
     /// The play failed.
     #[error(transparent)]
     Play(#[from] PlayError),
+    /// [`GoesOn`] broke before the result was complete.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 impl From<DeviceError> for SimulationError {

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use frixel_felt::check::feel;
 use frixel_felt::judge::{Advice, Judgement, LayerVerdict, Reason, Verdict};
-use frixel_hil_sim::{Board, RigConfig, TouchConfig};
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_play::{TO_THE_END, judge};
 use frixel_scene::{Program, Scene, compile};
 use frixel_testkit::examples;
 
@@ -21,8 +21,14 @@ fn program(text: &str) -> Program {
 }
 
 fn judged(layers: &str, advice: Advice) -> Judgement {
-    let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-    judge(&program(&format!("version = 1\n{layers}")), &rig, advice, TO_THE_END).unwrap()
+    judge(
+        &program(&format!("version = 1\n{layers}")),
+        &RigConfig::default(),
+        &WorldOptions::default(),
+        advice,
+        TO_THE_END,
+    )
+    .unwrap()
 }
 
 /// The topmost layer of a scene.
@@ -81,7 +87,7 @@ fn no_verdict_is_worse_than_that_of_a_smaller_element() {
 }
 
 fn sureness(verdict: Verdict) -> usize {
-    [Verdict::NotFelt, Verdict::Unknown, Verdict::NearThreshold, Verdict::Felt]
+    [Verdict::NotFelt, Verdict::Unknown, Verdict::Maybe, Verdict::Felt]
         .into_iter()
         .position(|other| other == verdict)
         .unwrap()
@@ -108,10 +114,12 @@ fn spokes_are_felt_however_they_are_turned() {
 fn the_examples_of_the_docs_are_felt() {
     let examples = examples::blocks(include_str!("../../../docs/design/scenes.md"));
     for example in examples.iter().filter(|example| example.contains("[[layer]]")) {
-        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
         let program = program(&examples::below_head(examples[0], example));
         let expected = if example.contains("kind = \"stream\"") { Verdict::Unknown } else { Verdict::Felt };
-        for found in judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers {
+        for found in judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END)
+            .unwrap()
+            .layers
+        {
             assert_eq!(found.verdict, expected, "{}\n{example}", feel::sentence(&found));
             let is_felt = found.click.is_none_or(|click| click.verdict == Verdict::Felt);
             assert!(is_felt, "{}\n{example}", feel::sentence(&found));
@@ -132,7 +140,7 @@ fn reasons_name_what_is_in_the_way() {
             feel::sentence(&fine)
         );
     }
-    for (on_ms, verdict) in [(1, Verdict::NotFelt), (2, Verdict::NearThreshold)] {
+    for (on_ms, verdict) in [(1, Verdict::NotFelt), (2, Verdict::Maybe)] {
         let burst = top(&format!(
             "[[layer]]\nkind = \"vibration\"\nfrequency_hz = 120\nlow_fraction = 0\nhigh_fraction = 0.9\n\
              burst = {{ period_ms = 60000, on_ms = {on_ms}, ramp_ms = 0.5 }}\n"
@@ -176,9 +184,9 @@ fn a_scene_without_layers_has_a_note() {
 fn nothing_is_felt_of_a_drive_forced_to_zero() {
     for layers in [bar(10.0), button([14.0, 10.0, 2.0]), grating(1.0), grating(8.0)] {
         let mut program = program(&format!("version = 1\n{layers}"));
-        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
         program.header.voltage_max_v_rms = 1.0;
-        let found = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap();
+        let found =
+            judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END).unwrap();
         assert_eq!(found.layers[0].verdict, Verdict::NotFelt, "{layers}{}", feel::sentence(&found.layers[0]));
     }
 }
@@ -239,8 +247,9 @@ fn the_judge_and_common_sense_agree() {
     let mut apart = Vec::new();
     for path in scenes() {
         let text = fs::read_to_string(&path).unwrap();
-        let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-        let checked = judge(&program(&text), &rig, Advice::Omitted, TO_THE_END).unwrap();
+        let checked =
+            judge(&program(&text), &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END)
+                .unwrap();
         let expected: Vec<(&str, &str)> = text
             .lines()
             .filter_map(|line| line.strip_prefix("# ")?.split_once(": "))

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::Advice;
 use frixel_felt::{FrictionMap, Preview};
-use frixel_hil_sim::{RigConfig, TouchConfig};
+use frixel_hil_sim::{RigConfig, WorldOptions};
 use frixel_lab::input::{is_same_name, read_named};
-use frixel_play::{board_costs, judge, judged_rig};
+use frixel_play::{board_costs, judge};
 use frixel_scene::{
     CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft, is_picture,
     picture_sentence,
@@ -136,13 +136,14 @@ impl Scene {
 
     /// What `frixel check --json` prints.
     fn check(&self, py: Python<'_>, touch: Option<ProfileText>, with_board: bool) -> PyResult<String> {
-        let touch = touch.map_or(Ok(TouchConfig::REALISTIC), |touch| touch.read(py))?;
+        let touch = touch.map(|touch| touch.read(py)).transpose()?;
+        let world = WorldOptions { touch, ..WorldOptions::default() };
         let rig = RigConfig::default();
         let program = py.detach(|| compile(&self.parsed, &rig.board.limits, rig.board.tick_hz));
         let program = program.map_err(|error| scene_error(py, &error))?;
         let json = interruptible(py, |goes_on| {
             let costs = board_costs(&program, &rig).map_err(|error| error.to_string())?;
-            let judgement = judge(&program, &judged_rig(rig.board, touch), Advice::Sought, goes_on);
+            let judgement = judge(&program, &rig, &world, Advice::Sought, goes_on);
             let judgement = judgement.map_err(|error| error.to_string())?;
             let check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
             Ok((if with_board { check.with_board(&program, rig.board.kind) } else { check }).to_json())

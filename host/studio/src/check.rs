@@ -2,8 +2,8 @@
 
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::{Advice, Judgement};
-use frixel_hil_sim::RigConfig;
-use frixel_play::{SimulationError, TO_THE_END, board_costs, judge, judged_rig};
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_play::{SimulationError, TO_THE_END, board_costs, judge};
 use frixel_scene::Scene;
 use serde_json::{Value, json};
 
@@ -47,8 +47,8 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         costs => costs.map_err(HostError::Simulation)?,
     };
     let judgement = if is_judged {
-        let rig = judged_rig(config.board, touch);
-        judge(&program, &rig, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
+        let world = WorldOptions { touch: Some(touch), ..WorldOptions::default() };
+        judge(&program, &config, &world, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
     } else {
         Judgement::default()
     };

@@ -1,7 +1,7 @@
 //! The layers of a scene's files, for a page that lists them beside the text.
 
 use frixel_felt::check::feel;
-use frixel_felt::judge::{Judgement, LayerVerdict, Texture};
+use frixel_felt::judge::{Judgement, LayerVerdict, Texture, weber_steps_text};
 use frixel_layers::{Point, Region, range};
 use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde::Serialize;
@@ -53,8 +53,8 @@ struct Perceived {
     /// The friction before and after its step, N: that within it or that at its border, whichever is larger.
     from_n: f64,
     to_n: f64,
-    /// The step in Weber steps.
-    weber_steps: f64,
+    /// Size of the step in Weber steps, as the command prints it.
+    weber_steps: String,
     /// The vibration that is felt most surely when it is slid over; `null` for a layer without one.
     texture: Option<PerceivedTexture>,
 }
@@ -80,7 +80,7 @@ impl Perceived {
             verdict: layer.verdict.words(),
             from_n: step.from_n,
             to_n: step.to_n,
-            weber_steps: step.weber_steps,
+            weber_steps: weber_steps_text(step.weber_steps.abs()),
             texture: layer.texture.as_ref().map(PerceivedTexture::of),
         }
     }

@@ -38,7 +38,7 @@ struct Finding {
 pub fn lines(judgement: &Judgement) -> Vec<Line> {
     let mut elements: Vec<Finding> = judgement.layers.iter().flat_map(elements).collect();
     elements.sort_by_key(|element| element.verdict.sureness());
-    let has_maybe = elements.iter().any(|element| element.verdict == Verdict::NearThreshold);
+    let has_maybe = elements.iter().any(|element| element.verdict == Verdict::Maybe);
     let groups = grouped(elements);
     let mut lines: Vec<Line> = groups.iter().map(Group::line).collect();
     let rows = lines.iter().scan(0, |rows, (_, text)| {
@@ -137,7 +137,7 @@ fn grouped(elements: Vec<Finding>) -> Vec<Group> {
 
 /// Number of elements without a line, by verdict.
 fn rest(groups: &[Group]) -> Option<String> {
-    let counts = [Verdict::NotFelt, Verdict::Unknown, Verdict::NearThreshold, Verdict::Felt].map(|verdict| {
+    let counts = [Verdict::NotFelt, Verdict::Unknown, Verdict::Maybe, Verdict::Felt].map(|verdict| {
         let count: usize = groups.iter().filter(|group| group.verdict == verdict).map(Group::count).sum();
         (count > 0).then(|| format!("{count} {}", verdict.words()))
     });
@@ -262,8 +262,9 @@ fn alike_text(alike: &AlikeLayers) -> String {
     let voltage = difference_db.map(|difference_db| {
         format!("{difference_db:.1} dB apart in voltage; {VOLTAGE_DIFFERENCE_DB} dB are needed to tell them apart")
     });
-    let friction = difference_weber_steps
-        .map(|steps| format!("{steps:.1} Weber steps apart in friction; 1 is needed to tell them apart"));
+    let friction = difference_weber_steps.map(|steps| {
+        format!("{} Weber steps apart in friction; 1 is needed to tell them apart", weber_steps_text(steps))
+    });
     let [one, other] = [0, 1].map(|side| match copies[side] {
         0 => layers[side].to_string(),
         copies => format!("{} and {copies} alike", layers[side]),

@@ -75,7 +75,7 @@ impl Reason {
     fn most(&self) -> Verdict {
         match self {
             Self::TooShort { duration_ms, .. } if *duration_ms < 1e3 * BURST_MIN_S => Verdict::NotFelt,
-            Self::TooRare { .. } => Verdict::NearThreshold,
+            Self::TooRare { .. } => Verdict::Maybe,
             _ => Verdict::Felt,
         }
     }
@@ -134,7 +134,7 @@ fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
     // Sizes in records are `f32`.
     match element.extent_m() / FINGERTIP_M - 1e-6 {
         part if part <= 0.5 => Some(Verdict::NotFelt),
-        part if part < 1.0 - 2e-6 => Some(Verdict::NearThreshold),
+        part if part < 1.0 - 2e-6 => Some(Verdict::Maybe),
         _ => None,
     }
 }

@@ -147,7 +147,7 @@ fn rare_and_short_bursts_have_their_reasons() {
         FAULTLESS.only(&format!("{fields}{burst}"))
     };
     let (lasting, rare) = (vibration(""), vibration("burst = { period_ms = 5000, on_ms = 100, ramp_ms = 10 }\n"));
-    assert_eq!((lasting.verdict, rare.verdict), (Verdict::Felt, Verdict::NearThreshold));
+    assert_eq!((lasting.verdict, rare.verdict), (Verdict::Felt, Verdict::Maybe));
     // The pauses are perceived too: a burst fills less than the integration time of touch.
     let [lasting_n, rare_n] = [&lasting, &rare].map(|found| found.texture.unwrap().amplitude_n);
     assert!((0.6..0.95).contains(&(rare_n / lasting_n)), "{rare_n} of {lasting_n}");

@@ -58,8 +58,7 @@ pub enum Verdict {
     /// Too small for anyone in the studies.
     NotFelt,
     /// Near the threshold, where some people or some strokes will not notice it.
-    #[serde(rename = "felt_by_some")]
-    NearThreshold,
+    Maybe,
     /// Felt by everyone in the studies.
     Felt,
     /// No study covers it.
@@ -71,7 +70,7 @@ impl Verdict {
     pub fn of_step(weber_steps: f64) -> Self {
         match weber_steps.abs() {
             steps if steps < 1.0 => Self::NotFelt,
-            steps if steps < weber_steps_safe() => Self::NearThreshold,
+            steps if steps < weber_steps_safe() => Self::Maybe,
             steps if steps.is_finite() => Self::Felt,
             _ => Self::Unknown,
         }
@@ -83,7 +82,7 @@ impl Verdict {
         if amplitude_n < threshold_n / THRESHOLD_UNCERTAINTY {
             Self::NotFelt
         } else if amplitude_n < threshold_n * THRESHOLD_UNCERTAINTY {
-            Self::NearThreshold
+            Self::Maybe
         } else if amplitude_n < natural_noise_amplitude_n(frequency_hz) {
             // The thresholds were measured on a finger that did not slide.
             Self::Unknown
@@ -102,8 +101,18 @@ impl Verdict {
         match self {
             Self::NotFelt => 0,
             Self::Unknown => 1,
-            Self::NearThreshold => 2,
+            Self::Maybe => 2,
             Self::Felt => 3,
+        }
+    }
+
+    /// Name of the verdict in columns and JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::NotFelt => "not_felt",
+            Self::Maybe => "maybe",
+            Self::Felt => "felt",
+            Self::Unknown => "unknown",
         }
     }
 
@@ -111,7 +120,7 @@ impl Verdict {
     pub fn words(self) -> &'static str {
         match self {
             Self::NotFelt => "not felt",
-            Self::NearThreshold => "maybe",
+            Self::Maybe => "maybe",
             Self::Felt => "felt",
             Self::Unknown => "unknown",
         }
@@ -229,14 +238,7 @@ mod tests {
         let verdicts = steps.map(Verdict::of_step);
         assert_eq!(
             verdicts,
-            [
-                Verdict::NotFelt,
-                Verdict::NearThreshold,
-                Verdict::NearThreshold,
-                Verdict::Felt,
-                Verdict::Felt,
-                Verdict::Unknown
-            ]
+            [Verdict::NotFelt, Verdict::Maybe, Verdict::Maybe, Verdict::Felt, Verdict::Felt, Verdict::Unknown]
         );
     }
 
@@ -276,7 +278,7 @@ mod tests {
     fn a_texture_is_judged_by_threshold_and_noise() {
         let threshold_n = texture_threshold_n(40.0).unwrap();
         assert_eq!(Verdict::of_texture(0.3 * threshold_n, 40.0), Verdict::NotFelt);
-        assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::NearThreshold);
+        assert_eq!(Verdict::of_texture(2.0 * threshold_n, 40.0), Verdict::Maybe);
         assert_eq!(Verdict::of_texture(4.0 * threshold_n, 40.0), Verdict::Felt);
         // At 250 Hz the threshold is far below the finger's own noise.
         assert_eq!(Verdict::of_texture(4.0 * texture_threshold_n(250.0).unwrap(), 250.0), Verdict::Unknown);

@@ -7,9 +7,9 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, weber_steps, weber_steps_text};
-use frixel_hil_sim::{Board, RigConfig, TouchConfig};
+use frixel_hil_sim::{Board, RigConfig, WorldOptions};
 use frixel_layers::Header;
-use frixel_play::{TO_THE_END, board_costs, judge, judged_rig};
+use frixel_play::{TO_THE_END, board_costs, judge};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
 
@@ -48,13 +48,13 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     let board = args.board.as_deref().and_then(Board::named);
     let board = board.map(|board| behind(board, args.series_kohm)).transpose()?;
     let rig = board.map_or_else(RigConfig::default, RigConfig::of);
-    let touch = args.touch.source()?.unwrap_or(TouchConfig::REALISTIC);
+    let world = WorldOptions { touch: args.touch.source()?, ..WorldOptions::default() };
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let compiled = scene.and_then(|scene| {
         compile(&scene, &rig.board.limits, rig.board.tick_hz).map_err(|error| {
             if board.is_some() && !args.json {
                 // Said beside the refusal, and nothing where there is no draft.
-                let _ = say_draft(&scene, &rig, &touch);
+                let _ = say_draft(&scene, &rig, &world);
             }
             error.into()
         })
@@ -66,7 +66,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
         }
         compiled => compiled?,
     };
-    let judgement = judge(&program, &judged_rig(rig.board, touch), Advice::Sought, TO_THE_END);
+    let judgement = judge(&program, &rig, &world, Advice::Sought, TO_THE_END);
     let judgement = judgement.map_err(of_simulation)?;
     let costs = board_costs(&program, &rig).map_err(of_simulation)?;
     let mut check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
@@ -104,9 +104,9 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
 }
 
 /// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
-fn say_draft(scene: &Scene, rig: &RigConfig, touch: &TouchConfig) -> Result<()> {
+fn say_draft(scene: &Scene, rig: &RigConfig, world: &WorldOptions) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
-    let judgement = judge(&draft, &judged_rig(rig.board, *touch), Advice::Omitted, TO_THE_END);
+    let judgement = judge(&draft, rig, world, Advice::Omitted, TO_THE_END);
     let felt = feel::text(&feel::lines(&judgement.map_err(of_simulation)?));
     print(board_line(&rig.board, &draft, "refuses it; what follows is clamped to what it can give") + &felt)
 }

@@ -9,8 +9,8 @@ use frixel_felt::Preview;
 use frixel_felt::check::feel;
 use frixel_felt::judge::Advice;
 use frixel_files::{Inputs, OutputFile};
-use frixel_hil_sim::{RigConfig, TouchConfig};
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_play::{TO_THE_END, judge};
 use frixel_scene::compile_draft;
 
 use super::argument::{number, whole};
@@ -40,10 +40,10 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
         let path = args.output.display();
         bail!("{path} is no PNG file by its name: give the picture a name that ends in .png");
     }
-    let board = RigConfig::default().board;
+    let rig = RigConfig::default();
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let output = OutputFile::new(&args.output, "-o", &Inputs::new(files.paths()))?;
-    let program = compile_draft(&scene?, &board.limits, board.tick_hz)?;
+    let program = compile_draft(&scene?, &rig.board.limits, rig.board.tick_hz)?;
     note_refusals(&args.scene, &program);
     let title = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let map_max = (args.map_width, args.map_width * 4 / 5);
@@ -52,8 +52,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     if program.is_draft() {
         print_line(format_args!("  {:<16} {}", "draft", draft_line(program.refusals().count())))?;
     }
-    let rig = judged_rig(board, TouchConfig::REALISTIC);
-    let judgement = judge(&program, &rig, Advice::Omitted, TO_THE_END);
+    let judgement = judge(&program, &rig, &WorldOptions::default(), Advice::Omitted, TO_THE_END);
     for (name, text) in feel::lines(&judgement.map_err(of_simulation)?) {
         print_line(format_args!("  {name:<16} {text}"))?;
     }

@@ -50,18 +50,18 @@ fn layers(score: &Score) -> Panel {
     let axis = Axis::linear("share of the simulated fingers that notice the layer", 0.0..1.0);
     let mut panel = Panel::new("", axis, Axis::linear("", (rows.len() as f64).max(1.0)..0.0).with_labels(0.0));
     panel.height = panel.height.max(ROW_HEIGHT * rows.len() as u32);
-    let (felt, maybe) = (Look::mark(PALETTE[0], Mark::Disc), Look::line(PALETTE[0], Line::Thick));
+    let (disc, line) = (Look::mark(PALETTE[0], Mark::Disc), Look::line(PALETTE[0], Line::Thick));
     let mut shares = Vec::new();
     for (number, layer) in rows.into_iter().enumerate() {
         let y = number as f64 + 0.6;
-        let Verdicts { touched, felt, felt_by_some, .. } = layer.simulated_fingers;
+        let Verdicts { touched, felt, maybe, .. } = layer.simulated_fingers;
         let share = |fingers: usize| fingers as f64 / touched.max(1) as f64;
         shares.push((share(felt), y));
-        if felt_by_some > 0 {
-            panel.add("", maybe, vec![(share(felt), y), (share(felt + felt_by_some), y)]);
+        if maybe > 0 {
+            panel.add("", line, vec![(share(felt), y), (share(felt + maybe), y)]);
         }
         panel.notes.push((0.005, y - 0.35, layer.layer.to_string()));
     }
-    panel.add("felt; line: maybe", felt, shares);
+    panel.add("felt; line: maybe", disc, shares);
     panel
 }

@@ -25,7 +25,7 @@ const SAMPLE_HZ: u32 = 4_000;
 /// Places of the simulated finger a second.
 const PLACE_HZ: f64 = 250.0;
 /// Finger for which the board computes voltages. Any finger will do, because only the voltages count.
-const BOARD_FINGER: Finger<f64> = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
+const BOARD_FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const BOARD_GAP_M: f64 = 10e-6;
 const BOARD_LOAD_N: f64 = 0.5;
 /// Part of the highest voltage's friction that is asked for, so that rounding stays within reach.

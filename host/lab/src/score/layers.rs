@@ -18,7 +18,7 @@ pub struct Verdicts {
     /// Fingers that notice it.
     pub felt: usize,
     /// Fingers near the threshold.
-    pub felt_by_some: usize,
+    pub maybe: usize,
     /// Fingers that do not notice it.
     pub not_felt: usize,
     /// Fingers of which no study says whether they notice it.
@@ -30,7 +30,7 @@ impl Verdicts {
     pub(crate) fn of_one(&self) -> Verdict {
         match *self {
             Self { felt: 1.., .. } => Verdict::Felt,
-            Self { felt_by_some: 1.., .. } => Verdict::NearThreshold,
+            Self { maybe: 1.., .. } => Verdict::Maybe,
             Self { unknown: 1.., .. } => Verdict::Unknown,
             _ => Verdict::NotFelt,
         }
@@ -44,7 +44,7 @@ impl FromIterator<Verdict> for Verdicts {
             counts.touched += 1;
             *match verdict {
                 Verdict::Felt => &mut counts.felt,
-                Verdict::NearThreshold => &mut counts.felt_by_some,
+                Verdict::Maybe => &mut counts.maybe,
                 Verdict::NotFelt => &mut counts.not_felt,
                 Verdict::Unknown => &mut counts.unknown,
             } += 1;
@@ -135,7 +135,7 @@ impl Verdicts {
             let shares = [self, other].map(|verdicts| count(verdicts) as f64 / verdicts.touched as f64);
             shares[0].total_cmp(&shares[1])
         };
-        share(|verdicts| verdicts.felt).then(share(|verdicts| verdicts.felt_by_some))
+        share(|verdicts| verdicts.felt).then(share(|verdicts| verdicts.maybe))
     }
 }
 

@@ -61,7 +61,8 @@ impl Trial {
         world: &WorldOptions,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<FidelitySample>, SimulationError> {
-        let simulation = Simulation::of_stroke(rig(world, self.finger), Stroke::clone(&self.stroke), self.seed);
+        let rig = RigConfig::default().with(&world_of(world, self.finger));
+        let simulation = Simulation::of_stroke(rig, Stroke::clone(&self.stroke), self.seed);
         Ok(simulate(program, &simulation, None, goes_on)?.samples())
     }
 }
@@ -109,7 +110,7 @@ impl Score {
     /// off are on.
     ///
     /// Trials are played side by side on the threads of the caller's rayon pool. The score is the same for any number
-    /// of threads. When `goes_on` breaks, it is that of what was played.
+    /// of threads. When `goes_on` breaks, it fails with [`SimulationError::Interrupted`].
     pub fn of(
         program: &Program,
         world: &WorldOptions,
@@ -121,7 +122,7 @@ impl Score {
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
             if goes_on().is_break() {
-                break;
+                return Err(SimulationError::Interrupted);
             }
             let felt = |trial: &Trial| {
                 trial.play(program, world, goes_on).map(|samples| {
@@ -145,7 +146,7 @@ impl Score {
         let score = Self {
             simulated: String::new(),
             verdict: String::new(),
-            touch_source: (&rig(world, None).world.touch).into(),
+            touch_source: (&RigConfig::default().with(world).world.touch).into(),
             simulated_fingers: fingers.len(),
             metrics: METRICS.iter().filter_map(|metric| metric.score(&groups)).collect(),
             levels: layers::levels(program, &fingers),
@@ -164,10 +165,9 @@ fn switched_on(program: &Program) -> Program {
     program
 }
 
-/// The simulated board in a world, under the finger of a trial.
-fn rig(world: &WorldOptions, finger: Option<TrialFinger>) -> RigConfig {
-    let finger = finger.map(|finger| finger.finger).or(world.finger);
-    RigConfig::default().with(&WorldOptions { finger, ..*world })
+/// A world with the finger of a trial.
+fn world_of(world: &WorldOptions, finger: Option<TrialFinger>) -> WorldOptions {
+    WorldOptions { finger: finger.map(|finger| finger.finger).or(world.finger), ..*world }
 }
 
 /// What each finger of some trials feels of a program.
@@ -184,7 +184,9 @@ fn judgements(
             fingers.push(trial.finger);
         }
     }
-    let judged = |finger: &Option<TrialFinger>| judge(program, &rig(world, *finger), Advice::Omitted, goes_on);
+    let judged = |finger: &Option<TrialFinger>| {
+        judge(program, &RigConfig::default(), &world_of(world, *finger), Advice::Omitted, goes_on)
+    };
     fingers.par_iter().map(judged).collect()
 }
 

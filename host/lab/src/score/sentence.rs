@@ -89,7 +89,7 @@ fn by_verdict(layers: &[&LayerScore]) -> String {
         let layers = ordered(layers);
         (!layers.is_empty()).then(|| format!("{}: {}", verdict.words(), titles(&layers)))
     };
-    let verdicts = [Verdict::NotFelt, Verdict::NearThreshold, Verdict::Unknown];
+    let verdicts = [Verdict::NotFelt, Verdict::Maybe, Verdict::Unknown];
     verdicts.into_iter().filter_map(of_verdict).collect::<Vec<String>>().join("; ")
 }
 
@@ -134,8 +134,8 @@ mod tests {
         LayerTitle::new(LayerNumber { table, copy }, Some(name), "button")
     }
 
-    fn verdicts(touched: usize, felt: usize, felt_by_some: usize) -> Verdicts {
-        Verdicts { touched, felt, felt_by_some, not_felt: touched - felt - felt_by_some, unknown: 0 }
+    fn verdicts(touched: usize, felt: usize, maybe: usize) -> Verdicts {
+        Verdicts { touched, felt, maybe, not_felt: touched - felt - maybe, unknown: 0 }
     }
 
     fn layer(layer: LayerTitle, simulated_fingers: Verdicts) -> LayerScore {

@@ -73,11 +73,11 @@ impl Score {
 
     /// A row for each layer.
     pub fn layers_csv(&self) -> String {
-        let mut text = "layer,simulated_fingers,felt,felt_by_some,not_felt,unknown,contrast_weber_steps,border_with,\
+        let mut text = "layer,simulated_fingers,felt,maybe,not_felt,unknown,contrast_weber_steps,border_with,\
                         border_weber_steps,texture_mn,texture_hz,texture_threshold_mn\n"
             .to_owned();
         for LayerScore { layer, simulated_fingers, contrast_weber_steps, texture, border } in &self.layers {
-            let Verdicts { touched, felt, felt_by_some, not_felt, unknown } = simulated_fingers;
+            let Verdicts { touched, felt, maybe, not_felt, unknown } = simulated_fingers;
             let with = border.as_ref().map_or(String::new(), |border| quoted(side(border)));
             let step = border.as_ref().map(|border| border.weber_steps);
             let newtons = texture.map(|texture| 1e3 * texture.amplitude_n);
@@ -88,7 +88,7 @@ impl Score {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{},{touched},{felt},{felt_by_some},{not_felt},{unknown},{contrast_weber_steps},{with},{step},\
+                "{},{touched},{felt},{maybe},{not_felt},{unknown},{contrast_weber_steps},{with},{step},\
                  {newtons},{hertz},{threshold}",
                 quoted(layer.as_str())
             );
@@ -177,8 +177,8 @@ fn level_text(level: &LevelScore) -> String {
 
 /// By how many fingers of those that touched it.
 fn counts(verdicts: &Verdicts) -> String {
-    let Verdicts { touched, felt, felt_by_some, unknown, .. } = verdicts;
-    let maybe = (*felt_by_some > 0).then(|| format!(", maybe by {felt_by_some}"));
+    let Verdicts { touched, felt, maybe, unknown, .. } = verdicts;
+    let maybe = (*maybe > 0).then(|| format!(", maybe by {maybe}"));
     let unknown = (*unknown > 0).then(|| format!(", unknown for {unknown}"));
     format!("{felt} of {touched}{}{}", maybe.unwrap_or_default(), unknown.unwrap_or_default())
 }

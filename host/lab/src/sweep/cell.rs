@@ -59,7 +59,7 @@ pub struct LayerResult {
     pub layer: String,
     /// Number of the layer's table in the scene: copies of a layer have the same one.
     pub table: usize,
-    /// Whether it notices the layer: `felt`, `felt_by_some` near the threshold, `not_felt` or `unknown`.
+    /// Whether it notices the layer: `felt`, `maybe`, `not_felt` or `unknown`.
     pub verdict: Verdict,
     /// Felt contrast within the layer, in Weber steps.
     pub contrast_weber_steps: f64,
@@ -140,7 +140,7 @@ impl Cell {
     }
 
     /// Plays the cell. The result is the same on every machine and for any number of threads. When `goes_on` breaks, it
-    /// is that of what was played.
+    /// fails with [`SimulationError::Interrupted`].
     pub fn play(&self, goes_on: GoesOn<'_>) -> Result<CellResult, CellError> {
         if self.version != env!("CARGO_PKG_VERSION") {
             return Err(CellError::OtherVersion { found: self.version.clone() });

@@ -80,8 +80,8 @@ impl Study {
             };
             lines.push(format!("  {}, {fingers}", group.title()));
             for LayerShare { layer, simulated_fingers, interval: [low, high], .. } in group.layer_rows() {
-                let Verdicts { touched, felt, felt_by_some, .. } = simulated_fingers;
-                let maybe = if felt_by_some > 0 { format!(", maybe by {felt_by_some}") } else { String::new() };
+                let Verdicts { touched, felt, maybe, .. } = simulated_fingers;
+                let maybe = if maybe > 0 { format!(", maybe by {maybe}") } else { String::new() };
                 let (low, high) = (100.0 * low, 100.0 * high);
                 lines.push(format!("  {layer:<30} felt by {felt} of {touched} ({low:.0} to {high:.0} %){maybe}"));
             }

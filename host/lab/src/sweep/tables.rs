@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use frixel_chart::DrawError;
-use frixel_felt::judge::Verdict;
 use thiserror::Error;
 
 use super::cell::LayerResult;
@@ -37,7 +36,7 @@ impl Study {
             texts("layer", "number and name of the layer", shares().map(|share| share.layer.clone())),
             wholes("simulated_fingers", "simulated fingers that touched it", verdicts().map(|count| count.touched)),
             wholes("felt", "those that notice it", verdicts().map(|count| count.felt)),
-            wholes("felt_by_some", "those near the threshold", verdicts().map(|count| count.felt_by_some)),
+            wholes("maybe", "those near the threshold", verdicts().map(|count| count.maybe)),
             wholes("not_felt", "those that do not notice it", verdicts().map(|count| count.not_felt)),
             wholes("unknown", "those of which no study says it", verdicts().map(|count| count.unknown)),
             numbers("felt_share", "", "share of those that notice it", shares().map(|share| Some(share.felt_share))),
@@ -81,7 +80,7 @@ impl Study {
                 rows.iter().map(|(_, finger, _)| Some(finger.moisture)),
             ),
             texts("layer", "number and name of the layer", layers().map(|layer| layer.layer.clone())),
-            texts("verdict", "whether the finger notices it", layers().map(|layer| word(layer.verdict).to_owned())),
+            texts("verdict", "whether the finger notices it", layers().map(|layer| layer.verdict.key().to_owned())),
             contrasts("felt contrast within the layer", layers().map(|layer| layer.contrast_weber_steps)),
         ]);
         columns
@@ -191,16 +190,6 @@ fn column(name: &str, unit: &str, meaning: &str, values: Values) -> Column {
     Column { field: Field::of((name, unit, meaning, kind)), values }
 }
 
-/// The word of a verdict.
-fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Felt => "felt",
-        Verdict::NearThreshold => "felt_by_some",
-        Verdict::NotFelt => "not_felt",
-        Verdict::Unknown => "unknown",
-    }
-}
-
 /// Columns as CSV, with texts in quotes; a cell of what is unknown is empty.
 fn csv(columns: &[Column]) -> String {
     let names = columns.iter().map(|column| {
@@ -231,6 +220,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use bytes::Bytes;
+    use frixel_felt::judge::Verdict;
     use parquet::file::reader::{FileReader, SerializedFileReader};
 
     use super::*;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use frixel_felt::check::feel;
 use frixel_felt::judge::{Advice, Verdict};
-use frixel_hil_sim::{Board, TouchConfig};
-use frixel_play::{TO_THE_END, judge, judged_rig};
+use frixel_hil_sim::{Board, RigConfig, WorldOptions};
+use frixel_play::{TO_THE_END, judge};
 use frixel_scene::{DiagnosticKind, Program, Scene, compile};
 
 use super::*;
@@ -39,8 +39,10 @@ fn whatever_can_be_added_is_felt_and_weaker_too() {
                 let program = program(&format!("{text}{gain}"));
                 let problem = program.diagnostics.iter().find(|found| found.kind != DiagnosticKind::Note);
                 assert!(problem.is_none(), "{text}{problem:?}");
-                let rig = judged_rig(Board::SIMULATOR, TouchConfig::REALISTIC);
-                let judged = judge(&program, &rig, Advice::Omitted, TO_THE_END).unwrap().layers;
+                let judged =
+                    judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END)
+                        .unwrap()
+                        .layers;
                 assert!(!judged.is_empty(), "{text}");
                 for found in judged {
                     let is_clicked = found.click.is_none_or(|click| click.verdict == Verdict::Felt);

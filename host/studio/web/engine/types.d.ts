@@ -33,7 +33,8 @@ export type Perceived = {
   verdict: string;
   fromN: number;
   toN: number;
-  weberSteps: number;
+  /** Size of the step, as the command prints it. */
+  weberSteps: string;
   texture: {
     verdict: string;
     speedMmPerS: number;

@@ -57,11 +57,6 @@ function stepBar({ fromN, toN }, { naturalN, reachN }) {
   return element("span", { className: "step-bar", title: words, role: "img", "aria-label": words }, fill);
 }
 
-/** @param {Perceived} perceived */
-function weber({ weberSteps }) {
-  return `${Math.abs(weberSteps).toFixed(1)}`;
-}
-
 /**
  * What is felt of a layer, in one line: whether, its step as a bar, and the frequency of its texture.
  * @param {Layer} layer
@@ -70,7 +65,7 @@ function weber({ weberSteps }) {
 export function feltLine({ perceived, felt }, scale) {
   if (!perceived) return element("span", { className: "felt-line soft" }, "hidden by the layers above");
   const line = element("span", { className: "felt-line", title: felt }, chip(perceived.verdict, felt));
-  line.append(stepBar(perceived, scale), element("span", {}, element("small", {}, "step "), weber(perceived)));
+  line.append(stepBar(perceived, scale), element("span", {}, element("small", {}, "step "), perceived.weberSteps));
   const { texture } = perceived;
   if (texture) line.append(element("span", {}, `${Math.round(texture.frequencyHz)}`, element("small", {}, " Hz")));
   return line;
@@ -121,7 +116,7 @@ function row({ name, perceived, felt }, scale) {
   const hertz = texture ? `${Math.round(texture.frequencyHz)} Hz at ${Math.round(texture.speedMmPerS)} mm/s` : "–";
   const most = millinewtons(Math.max(perceived.fromN, perceived.toN));
   const friction = element("td", {}, stepBar(perceived, scale), " ", element("span", { className: "number" }, `${most} mN`));
-  const cells = [chip(perceived.verdict, felt), weber(perceived), hertz].map((content) => element("td", {}, content));
+  const cells = [chip(perceived.verdict, felt), perceived.weberSteps, hertz].map((content) => element("td", {}, content));
   return element("tr", {}, title, cells[0], friction, cells[1], cells[2]);
 }
 
