@@ -3,7 +3,7 @@
 mod room;
 
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::layer_text::{self, TextError};
 use room::{BoxMm, roomiest};
@@ -208,6 +208,12 @@ static ADDITIONS: [Addition; 11] = [
     },
 ];
 
+/// The kinds of layer that no button adds, as a person begins to write one.
+const WRITTEN: [&str; 2] = [
+    "kind = \"speed\"\nspeeds_mm_per_s = [20, 150]\nfactors = [0.3, 1]\n",
+    "kind = \"stream\"\nlow_fraction = 0\nhigh_fraction = 0.8\n",
+];
+
 impl Addition {
     /// The lines behind its name, and its box, where it is added to what lies on a screen, or alone in New.
     fn laid(&self, screen_mm: [f64; 2], taken_mm: Option<&[BoxMm]>) -> (String, Option<BoxMm>) {
@@ -259,6 +265,23 @@ pub(crate) fn list() -> Result<Value, TextError> {
         Ok(json!({ "name": name, "words": words, "isPicture": is_picture, "scene": scene }))
     };
     ADDITIONS.iter().map(each).collect()
+}
+
+/// For the page's completion: the values that a new layer of each kind has, as TOML by its fields, by the kind. They
+/// are those of the first layer of that kind that can be added.
+pub(crate) fn first_values() -> Value {
+    let listed = ADDITIONS.iter().map(|addition| addition.laid(SCREEN_MM, None).0);
+    let mut kinds = Map::new();
+    for lines in listed.chain(WRITTEN.map(str::to_owned)) {
+        let mut values: Map<String, Value> = lines
+            .lines()
+            .filter_map(|line| line.split_once(" = "))
+            .map(|(field, value)| (field.to_owned(), value.into()))
+            .collect();
+        let kind = values.remove("kind").unwrap_or_default();
+        kinds.entry(kind.as_str().unwrap_or_default().trim_matches('"')).or_insert(values.into());
+    }
+    kinds.into()
 }
 
 /// A layer that the page adds.

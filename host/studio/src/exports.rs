@@ -10,7 +10,7 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
-use frixel_felt::judge::weber_steps;
+use frixel_felt::judge::{WEBER_FRACTION, weber_steps};
 use frixel_wire::fault::{Fault, State};
 use serde_json::{Value, json};
 
@@ -95,10 +95,18 @@ pub extern "C" fn layouts() -> i32 {
     respond(|| Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS })))
 }
 
-/// What the page knows of perception: `weberStepsPerE`, the Weber steps of a friction that is e times as large.
+/// What the page knows of perception: `weberStepsPerE`, the Weber steps of a friction that is e times as large, and
+/// `weberStep`, a sentence on what such a step is.
 #[unsafe(no_mangle)]
 pub extern "C" fn perception() -> i32 {
-    respond(|| Ok(json!({ "weberStepsPerE": weber_steps(1.0, std::f64::consts::E) })))
+    respond(|| {
+        let steps_per_e = weber_steps(1.0, std::f64::consts::E);
+        let factor = 1.0 + WEBER_FRACTION;
+        let step = format!(
+            "A Weber step is a factor of {factor:.2}, about the smallest change of friction that a finger feels."
+        );
+        Ok(json!({ "weberStepsPerE": steps_per_e, "weberStep": step }))
+    })
 }
 
 /// [`crate::used_files`].
@@ -123,6 +131,12 @@ pub extern "C" fn edit_text() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn additions() -> i32 {
     respond(|| Ok(additions::list()?))
+}
+
+/// What layers of each kind begin with: `additions.rs` says how.
+#[unsafe(no_mangle)]
+pub extern "C" fn first_values() -> i32 {
+    respond(|| Ok(additions::first_values()))
 }
 
 /// Adds a layer to a text, as `additions.rs` says.

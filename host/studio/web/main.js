@@ -38,7 +38,7 @@ import { guardSliders } from "./page/slider_touch.js";
 import { Sound } from "./page/sound.js";
 import { makeTabs } from "./page/tabs.js";
 import { makeTheme } from "./page/theme.js";
-import { editWith } from "./page/toml_text.js";
+import { editWith, perception } from "./page/toml_text.js";
 import { makeView } from "./page/view.js";
 import { Works } from "./page/works.js";
 
@@ -54,7 +54,7 @@ async function start() {
   const engine = await createEngine();
   const instance = await engine.instance();
   editWith(instance);
-  laid.numbers.weberStepsPerE = instance.call("perception", new Uint8Array()).weberStepsPerE;
+  laid.numbers.know(perception());
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();

@@ -51,10 +51,10 @@ pub use reason::{Reason, SizeLimit};
 pub(crate) use spectrum::component_power;
 pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};
 use step::{contrast_within, has_texture, texture_component, total_n, visible_layers};
-pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, WEBER_FRACTION, natural_noise_amplitude_n, texture_range_n};
+pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, natural_noise_amplitude_n, texture_range_n};
 pub use thresholds::{
-    NATURAL_NOISE_RMS_N, THRESHOLD_UNCERTAINTY, Verdict, texture_threshold_n, weber_steps, weber_steps_safe,
-    weber_steps_text,
+    NATURAL_NOISE_RMS_N, THRESHOLD_UNCERTAINTY, Verdict, WEBER_FRACTION, texture_threshold_n, weber_steps,
+    weber_steps_safe, weber_steps_text,
 };
 
 /// Sampling rate of the friction along a stroke, Hz: four times the highest frequency with a threshold.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Weber fraction of friction: the smallest perceptible change of the total friction, for a transient decrease
 /// (Gueorguiev 2017, doi:10.1098/rsif.2017.0641). It is assumed to hold for increases and for changes over place. It
 /// does not apply to fine textures.
-pub(crate) const WEBER_FRACTION: f64 = 0.11;
+pub const WEBER_FRACTION: f64 = 0.11;
 
 /// Weber fraction that rubber needed under active touch, rounded up to the 0.27 of force discrimination below 0.5 N
 /// (Fehlberg 2022, doi:10.1007/978-3-031-06249-0_3: 0.2; doi:10.1038/s41598-022-12010-0: 0.15 to 0.27). A step above it

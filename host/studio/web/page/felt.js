@@ -3,6 +3,7 @@
 
 import { byId, element, shortName } from "./dom.js";
 import { notify } from "./notices.js";
+import { perception } from "./toml_text.js";
 
 /** @import { Checked, Layer, Perceived } from "../engine/types" */
 /** @typedef {{ naturalN: number, reachN: number }} Scale Friction of bare glass, and the most that can be reached, N. */
@@ -13,9 +14,7 @@ const REMARKS = ["draft", "warning", "out of reach", "alike", "note"];
 const OF_LAYERS = ["not felt", "unknown", "maybe", "felt", "more"];
 
 /** What the numbers of layers are: one line, where they are shown. */
-const STEP =
-  "Step: the largest step of friction, inside the layer or at its border, in Weber steps. A Weber step is a factor of " +
-  "1.11, about the smallest change that a finger feels.";
+const STEP = "Step: the largest step of friction, inside the layer or at its border, in Weber steps.";
 /** @type {Record<string, string>} */
 const MEANINGS = {
   reachable: "what this board and finger can give; the map's colours end there",
@@ -36,7 +35,7 @@ function chip(verdict, sentence) {
 
 /** What the numbers of layers are. */
 export function stepLine() {
-  return element("p", { className: "fine step-words" }, STEP);
+  return element("p", { className: "fine step-words" }, `${STEP} ${perception().weberStep}`);
 }
 
 /** @param {number} newtons */

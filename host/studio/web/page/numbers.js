@@ -5,6 +5,7 @@ import { byId, element, volts } from "./dom.js";
 import { notify } from "./notices.js";
 
 /** @import { Frame } from "../engine/types" */
+/** @import { perception } from "./toml_text.js" */
 /** @typedef {{ friction?: number, weber?: number, voltage?: number, speed?: number }} Shown */
 
 /** Below this voltage, V rms, the drive adds nothing: what is felt beside bare glass is the finger's own noise. */
@@ -17,6 +18,9 @@ const SAMPLES = 40;
  */
 const SLIDES_ABOVE = 5;
 const STANDS_BELOW = 2;
+const ABOVE =
+  "How much stronger than bare glass the friction is now, in noticeable steps (Weber steps); none where nothing is " +
+  "driven.";
 /** What stands in place of the friction of a finger that does not slide: sliding friction is not defined there. */
 const SLIDE_TO_FEEL = "slide to feel";
 
@@ -26,8 +30,7 @@ export class Numbers {
   /** @type {Record<string, number>} */
   #means = {};
   #isSliding = false;
-  /** The noticeable steps of a friction that is e times as large, as the engine's module says. */
-  weberStepsPerE = NaN;
+  #weberStepsPerE = NaN;
 
   constructor() {
     /** @param {[key: string, title: string, unit: string, meaning: string, kind?: string]} field */
@@ -38,7 +41,7 @@ export class Numbers {
         element(
           "div",
           { title: meaning },
-          element("dt", {}, explained(title, meaning)),
+          element("dt", {}, explained(title)),
           element("dd", { className: kind }, value, " ", unitShown),
         ),
       );
@@ -47,15 +50,21 @@ export class Numbers {
       "It wanders with the finger's load and noise, also below the map's scale. The finger is assumed, not measured: " +
       "About says what that means.";
     add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
-    const step = "A Weber step is a factor of 1.11, about the smallest change of friction that a finger feels.";
-    const above =
-      "How much stronger than bare glass the friction is now, in noticeable steps (Weber steps); none where nothing " +
-      "is driven.";
-    add("weber", "Above bare glass", "steps", `${above} ${step}`, "felt");
+    add("weber", "Above bare glass", "steps", ABOVE, "felt");
     const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
     add("voltage", "Drive voltage", "V", volts, "voltage");
     add("speed", "Speed", "mm/s", "Speed of the simulated finger. Below 5 mm/s no friction is shown.");
     this.#show({});
+  }
+
+  /**
+   * The engine is there, and says what a noticeable step is.
+   * @param {ReturnType<typeof perception>} perception
+   */
+  know({ weberStepsPerE, weberStep }) {
+    this.#weberStepsPerE = weberStepsPerE;
+    const row = this.#fields.weber.value.closest("div");
+    if (row) row.title = `${ABOVE} ${weberStep}`;
   }
 
   /**
@@ -84,7 +93,7 @@ export class Numbers {
    * @param {number} [voltageVRms]
    */
   #weberSteps(feltN, naturalN, voltageVRms = Infinity) {
-    return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) * this.weberStepsPerE;
+    return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) * this.#weberStepsPerE;
   }
 
   /**
@@ -143,12 +152,14 @@ export class Numbers {
 }
 
 /**
- * The name of a number: a press on it, or on the number, says what it means.
+ * The name of a number: a press on it, or on the number, says what it means, as the title of both does.
  * @param {string} title
- * @param {string} meaning
  */
-function explained(title, meaning) {
+function explained(title) {
   const button = element("button", { type: "button", className: "why" }, title);
-  button.onclick = () => notify(`${title}: ${meaning}`, undefined, { isGood: true, beside: button });
+  button.onclick = () => {
+    const meaning = button.closest("div")?.title;
+    notify(`${title}: ${meaning}`, undefined, { isGood: true, beside: button });
+  };
   return button;
 }

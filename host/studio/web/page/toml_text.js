@@ -120,6 +120,22 @@ export function additions() {
 }
 
 /**
+ * The values of a new layer of each kind, as TOML by its fields.
+ * @returns {Record<string, Record<string, string>>}
+ */
+export function firstValues() {
+  return instance.call("first_values", new Uint8Array());
+}
+
+/**
+ * What is known of perception: the noticeable steps of a friction that is e times as large, and what such a step is.
+ * @returns {{ weberStepsPerE: number, weberStep: string }}
+ */
+export function perception() {
+  return instance.call("perception", new Uint8Array());
+}
+
+/**
  * A text with a layer more, and the box of that where it is not the whole screen.
  * @param {{ text: string, name: string, layer: string | [file: string, aspect: number], screenMm: [number, number],
  *   takenMm: BoxMm[] }} added `layer` is a name of `additions`, or a picture.
