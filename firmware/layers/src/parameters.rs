@@ -195,9 +195,9 @@ pub fn within(field: ConfigField, found: f32, min: f32, max: f32, layer: u8) -> 
     if found >= min && found <= max { Ok(()) } else { Err(ConfigRefusal { field, found, min, max, layer }) }
 }
 
-/// The ranges that boards accept, in SI units. The host's compiler uses the same ranges.
+/// The ranges of layers that boards accept, in SI units. The host's compiler uses the same ranges.
 pub mod range {
-    use frixel_wire::message::ConfigField;
+    use frixel_wire::message::{ConfigField, GAIN_MAX};
 
     use super::Range;
 
@@ -207,7 +207,7 @@ pub mod range {
     const CYCLES_PER_M_MAX: f64 = 2e4;
 
     /// Gain of a layer.
-    pub const GAIN: Range = Range::new(ConfigField::Gain, -100.0, 100.0);
+    pub const GAIN: Range = Range::new(ConfigField::Gain, -GAIN_MAX, GAIN_MAX);
     /// Electric friction in a layer's parameters, N; or a factor.
     pub const FRICTION_N: Range = Range::new(ConfigField::Friction, -100.0, 100.0);
     /// Left or top end of a region, m.

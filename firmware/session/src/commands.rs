@@ -130,7 +130,9 @@ impl<'a> Commands<'a> {
             Command::UploadEnd => scenes.end_upload(),
             // `carry_out` handles a commit before.
             Command::Commit { .. } => Err(Refusal::Busy),
-            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => link.subscribe(period_ticks),
+            Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => {
+                link.subscribe(period_ticks, board.tick_hz)
+            }
             Command::Touch { .. } | Command::Lift | Command::TouchFinger { .. } | Command::LiftFinger { .. }
                 if !board.touch_from_host =>
             {

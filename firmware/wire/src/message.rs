@@ -59,7 +59,7 @@ pub enum Command {
     ClearFault,
     /// Starts periodic telemetry, or stops it if the period is zero.
     Subscribe {
-        /// Ticks between two telemetry messages: at least [`TELEMETRY_PERIOD_MIN_TICKS`], or zero.
+        /// Ticks between two telemetry messages: at least [`telemetry_period_min_ticks`], or zero.
         period_ticks: u32,
     },
     /// Reports the position of the finger, for a board that takes touch from the host.
@@ -128,8 +128,16 @@ pub const FAULT_TEXT_PIECE_LEN: usize = 32;
 /// Maximum length of the fault text, in bytes.
 pub const FAULT_TEXT_MAX_LEN: usize = 192;
 
-/// Shortest telemetry period, in ticks: 1 kHz at a tick rate of 40 kHz.
-pub const TELEMETRY_PERIOD_MIN_TICKS: u32 = 40;
+/// Largest magnitude of a layer's gain.
+pub const GAIN_MAX: f64 = 100.0;
+
+/// Highest rate of telemetry, messages per second.
+pub const TELEMETRY_MAX_HZ: u32 = 1000;
+
+/// Shortest telemetry period of a board with this tick rate, in ticks.
+pub const fn telemetry_period_min_ticks(tick_hz: u32) -> u32 {
+    tick_hz.div_ceil(TELEMETRY_MAX_HZ)
+}
 
 /// A message from the board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize)]

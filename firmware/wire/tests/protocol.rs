@@ -12,7 +12,7 @@ use frixel_wire::hello::{
 };
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
-    STREAM_START_LEVEL_MAX, TELEMETRY_PERIOD_MIN_TICKS,
+    STREAM_START_LEVEL_MAX, TELEMETRY_MAX_HZ, telemetry_period_min_ticks,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload, SAMPLES_MAX};
 use frixel_wire::scene::{CURVE_POINTS_MAX, POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, SceneError};
@@ -263,7 +263,8 @@ fn constants_are_those_of_the_text() {
     assert_eq!((RECORDS_MAX, POINTS_MAX), (64, 128));
     assert_eq!((POLYGON_POINTS_MAX, CURVE_POINTS_MAX), (32, 16));
     assert_eq!((SceneError::HEADER, ConfigRefusal::WHOLE_SCENE), (255, 255));
-    assert_eq!(TELEMETRY_PERIOD_MIN_TICKS, 40);
+    assert_eq!([40_000, 8_000, 999].map(telemetry_period_min_ticks), [40, 8, 1]);
+    assert_eq!(TELEMETRY_MAX_HZ, 1_000);
     assert_eq!((SAMPLES_MAX, STREAM_START_LEVEL_MAX), (90, 800));
     assert_eq!((FAULT_TEXT_PIECE_LEN, FAULT_TEXT_MAX_LEN), (32, 192));
     assert_eq!(to_hex(&MAGIC), "46 52 58 4c");

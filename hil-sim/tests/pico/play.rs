@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use frixel_control::Drive;
-use frixel_driver::{DeviceError, ignore_progress};
+use frixel_driver::{DeviceError, Event, ignore_progress};
 use frixel_hil_sim::emulated::{Stamped, StartCause, WireEvent};
 use frixel_layers::Header;
 use frixel_scene::Program;
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
-use frixel_wire::message::{ConfigField, Refusal};
+use frixel_wire::message::{ConfigField, Refusal, telemetry_period_min_ticks};
 
 use super::bench::{BOARD, Bench, CONSTANT, TICK, program_for};
 use crate::emulator;
@@ -49,6 +49,17 @@ fn after_power_on_the_board_says_hello_and_its_output_is_zero() {
     assert_eq!(events[0].event, WireEvent::Start(StartCause::Power));
     assert!(!events.iter().any(|stamped| stamped.event == WireEvent::Enable(true)), "the enable stays low");
     assert!(frames(&events).len() > 1000);
+}
+
+#[test]
+fn telemetry_comes_a_thousand_times_a_second() {
+    let Some(image) = emulator::pico_image() else { return };
+    let mut host = Bench::just_on(&image).connect();
+    host.subscribe(telemetry_period_min_ticks(BOARD.tick_hz)).unwrap();
+    let mut messages = 0;
+    let mut count = |event| messages += u32::from(matches!(event, Event::Telemetry(_)));
+    host.wait(Duration::from_millis(100), &mut count).unwrap();
+    assert!(messages >= 99, "{messages}");
 }
 
 /// A board that has stored no limits was never measured.

@@ -12,12 +12,11 @@
 //! NAME is the name of a layer in the scene, or its number as in messages: `3`, or `3.2` for a copy. Names and paths
 //! with spaces need quotation marks. Empty lines, and everything after `#`, are ignored.
 
+use frixel_wire::message::GAIN_MAX;
 use thiserror::Error;
 
-/// Longest duration of a trigger or a wait: one hour, s.
-const DURATION_MAX_S: f64 = 3_600.0;
-/// Largest magnitude of a gain (PROTOCOL, `SetLayer`).
-const GAIN_MAX: f32 = 100.0;
+/// Longest duration of a trigger, or of a wait in a control line: one hour, s.
+pub const DURATION_MAX_S: f64 = 3_600.0;
 
 /// A line, parsed.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,7 +128,7 @@ impl ControlLine {
                 "off" => on = Some(false),
                 "gain" => {
                     let found = words.next(CHANGE)?;
-                    let number = found.parse().ok().filter(|gain: &f32| gain.abs() <= GAIN_MAX);
+                    let number = found.parse().ok().filter(|gain: &f32| f64::from(gain.abs()) <= GAIN_MAX);
                     gain = Some(number.ok_or(ControlError::Unexpected { found, expected: CHANGE })?);
                 }
                 _ => return Err(ControlError::Unexpected { found: word, expected: CHANGE }),

@@ -56,7 +56,7 @@ mod native;
 mod polling;
 mod upload;
 
-pub use control::{ControlError, ControlLine};
+pub use control::{ControlError, ControlLine, DURATION_MAX_S};
 pub use device::{Counters, Device, Event, StreamSettings, StreamStatus};
 pub use error::{DeviceError, LinkClosed};
 pub use exchange::Waiting;

@@ -11,7 +11,7 @@ use frixel_control::Status;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{
-    Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_PERIOD_MIN_TICKS, Telemetry,
+    Accepted, Answer, Command, FromBoard, Refusal, Request, Telemetry, telemetry_period_min_ticks,
 };
 use heapless::Deque;
 
@@ -163,9 +163,10 @@ impl Link {
     }
 
     /// Sends telemetry with this period from now on; 0 ends it.
-    pub(crate) fn subscribe(&mut self, period_ticks: u32) -> Result<Accepted, Refusal> {
-        if period_ticks != 0 && period_ticks < TELEMETRY_PERIOD_MIN_TICKS {
-            return Err(Refusal::TelemetryTooFast { period_min_ticks: TELEMETRY_PERIOD_MIN_TICKS });
+    pub(crate) fn subscribe(&mut self, period_ticks: u32, tick_hz: u32) -> Result<Accepted, Refusal> {
+        let period_min_ticks = telemetry_period_min_ticks(tick_hz);
+        if period_ticks != 0 && period_ticks < period_min_ticks {
+            return Err(Refusal::TelemetryTooFast { period_min_ticks });
         }
         self.telemetry_period_ticks = period_ticks;
         Ok(Accepted::Done)

@@ -2,6 +2,7 @@
 
 use super::{CalibrationError, ForceRow};
 use crate::fit::Row;
+use crate::fit::turns::STILL_MM_S;
 
 /// Rate at which both signals are compared, in Hz.
 const GRID_HZ: f64 = 1000.0;
@@ -17,8 +18,6 @@ const CORRELATION_MIN: f64 = 0.1;
 const DRIFT_MAX_S: f64 = 1e-3;
 /// Slowest sensor, in Hz.
 const SENSOR_MIN_HZ: f64 = 200.0;
-/// Speed below which a finger turns or rests, in mm/s.
-const STILL_MM_S: f64 = 5.0;
 /// Shortest stroke that is used, in seconds.
 const STROKE_MIN_S: f64 = 0.4;
 

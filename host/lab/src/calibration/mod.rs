@@ -17,8 +17,8 @@ use thiserror::Error;
 
 pub use align::{BoardRow, align};
 pub use force_sensor::ForceSensor;
-pub use protocol::Protocol;
-pub use simulated_finger::{example_finger, simulated_finger, simulation_seed};
+pub use protocol::{Protocol, VOLTAGE_MAX_V_RMS};
+pub use simulated_finger::{simulated_finger, simulation_seed};
 
 use crate::fit::Row;
 use crate::table::{Column, Reading, Table, TableError, Unit, whole_rows};

@@ -28,6 +28,8 @@ const PLACE_HZ: f64 = 250.0;
 const BOARD_FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
 const BOARD_GAP_M: f64 = 10e-6;
 const BOARD_LOAD_N: f64 = 0.5;
+/// Highest voltage in a calibration or an experiment with a person, V rms.
+pub const VOLTAGE_MAX_V_RMS: f64 = 150.0;
 /// Part of the highest voltage's friction that is asked for, so that rounding stays within reach.
 const REACH: f64 = 0.999;
 
@@ -137,10 +139,13 @@ impl Protocol {
         let contact = Contact::new(&BOARD_FINGER, BOARD_GAP_M)?.under_load(BOARD_LOAD_N)?;
         let highest = self.voltage_max_v_rms();
         let high_n = REACH * contact.electric_friction_n(highest);
+        let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = BOARD_FINGER;
+        let (thickness_um, radius_mm) = (1e6 * BOARD_GAP_M, 1e3 * radius_m);
         Ok(format!(
-            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80, coating = {{ thickness_um = 10, permittivity = 1 }} }}\n\
-             finger = {{ radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, \
-             skin_gap_um = 0 }}\n\
+            "version = 1\nscreen = {{ width_mm = 120, height_mm = 80, \
+             coating = {{ thickness_um = {thickness_um}, permittivity = 1 }} }}\n\
+             finger = {{ radius_mm = {radius_mm}, stiffness_pa_per_m = {stiffness_pa_per_m}, \
+             friction_coefficient = {friction_coefficient}, normal_load_n = {BOARD_LOAD_N}, skin_gap_um = 0 }}\n\
              drive = {{ voltage_max_v_rms = {highest} }}\n\
              [[layer]]\nname = \"calibration\"\nkind = \"stream\"\nlow_n = 0.0\nhigh_n = {high_n}\n"
         ))

@@ -2,23 +2,7 @@
 
 use frixel_hil_sim::{FingertipConfig, OwnFinger, Person};
 use frixel_model::{Contact, Finger, ParameterError};
-use frixel_scene::{Elasticity, FingerProfile};
-
-use crate::fit::CONVENTIONAL_STIFFNESS_PA_PER_M;
-
-/// The example finger of the contact model.
-pub fn example_finger() -> Finger<f64> {
-    let example = FingerProfile::example();
-    let stiffness_pa_per_m = match example.elasticity {
-        Elasticity::WinklerFuss { stiffness_pa_per_m } => stiffness_pa_per_m,
-        Elasticity::Soft { .. } | Elasticity::Empirical(_) => CONVENTIONAL_STIFFNESS_PA_PER_M,
-    };
-    Finger {
-        radius_m: 1e-3 * example.radius_mm,
-        stiffness_pa_per_m,
-        friction_coefficient: example.friction_coefficient,
-    }
-}
+use frixel_scene::FingerProfile;
 
 /// The finger under a simulated board, on a coating with this effective gap: that of the person of a seed, or the
 /// example finger.
@@ -27,7 +11,7 @@ pub fn simulated_finger(seed: Option<u64>, coating_gap_m: f64) -> Result<OwnFing
         return Person::drawn(seed).own_finger(coating_gap_m);
     }
     let example = FingerProfile::example();
-    let contact = Contact::new(&example_finger(), coating_gap_m + 1e-6 * example.skin_gap_um);
+    let contact = Contact::new(&Finger::<f64>::EXAMPLE, coating_gap_m + 1e-6 * example.skin_gap_um);
     let contact = contact.and_then(|contact| contact.under_load(example.normal_load_n));
     Ok(OwnFinger { law: contact?.into(), fingertip: FingertipConfig::REALISTIC })
 }

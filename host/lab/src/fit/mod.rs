@@ -40,7 +40,7 @@ mod search;
 mod sensor;
 mod summary;
 mod table;
-mod turns;
+pub(crate) mod turns;
 mod verdict;
 mod zero;
 

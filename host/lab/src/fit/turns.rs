@@ -6,7 +6,7 @@ use crate::statistics::median;
 /// Friction of the other sign that counts as a turn, not as noise, as a fraction of the median size of friction.
 const TURN_SHARE: f64 = 0.25;
 /// A finger slower than this, in mm/s, turns or stands still.
-pub(super) const STILL_MM_S: f64 = 5.0;
+pub(crate) const STILL_MM_S: f64 = 5.0;
 
 /// A finger that turns does not turn back within this time, in seconds; noise does.
 const TURN_BACK_S: f64 = 0.1;

@@ -78,13 +78,15 @@ pub(super) mod when {
 
 /// `[[command]]`.
 pub(super) mod command {
+    use frixel_wire::message::GAIN_MAX;
+
     use super::{FieldSpec, Holds, Means, Mistake, Range, number, word};
 
     pub(crate) const DO: FieldSpec = word("do", Mistake, "what the host does");
     pub(crate) const LAYER: FieldSpec =
         FieldSpec::new("layer", Holds::Text, Mistake, "the layer's name, or its number as a text");
     pub(crate) const GAIN: FieldSpec =
-        number("gain", Range::new(-100.0, 100.0, ""), Means("as it is"), "the layer's gain");
+        number("gain", Range::new(-GAIN_MAX, GAIN_MAX, ""), Means("as it is"), "the layer's gain");
     pub(crate) const SCENE: FieldSpec = FieldSpec::new("scene", Holds::Text, Mistake, "file of the next scene");
     #[cfg(test)]
     pub(crate) const ALL: &[FieldSpec] = &[DO, LAYER, GAIN, SCENE];

@@ -6,10 +6,11 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use frixel_driver::{Device, ignore_progress};
 use frixel_felt::recorder::{FeltRow, Recorder};
-use frixel_lab::calibration::{BoardRow, Protocol, write_board};
+use frixel_lab::calibration::{BoardRow, Protocol, VOLTAGE_MAX_V_RMS, write_board};
 use frixel_play::{Feed, Player};
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
+use frixel_wire::message::TELEMETRY_MAX_HZ;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::CalibrateArgs;
@@ -22,9 +23,7 @@ use crate::scene_file::ProfileNames;
 use frixel_files::OutputFile;
 
 /// Rows a second of the recording.
-pub(super) const ROW_HZ: u32 = 1_000;
-/// Highest voltage of a calibration, in volts rms.
-const VOLTAGE_MAX_V_RMS: f64 = 150.0;
+pub(super) const ROW_HZ: u32 = TELEMETRY_MAX_HZ;
 
 /// A protocol that is ready to play on a board.
 pub(super) struct Plan {
