@@ -47,8 +47,15 @@ mod _frixel {
     #[pymodule_export]
     use super::sweep::{play_cell, study_files, sweep_cells};
 
+    use frixel_driver::DURATION_MAX_S;
+    use frixel_hil_sim::Board;
+    use frixel_lab::calibration::VOLTAGE_MAX_V_RMS;
     use frixel_lab::score::TrialPlan;
-    use pyo3::types::PyModuleMethods;
+    use frixel_lab::simulate::STROKE_MAX_S;
+    use frixel_model::Finger;
+    use frixel_scene::FingerProfile;
+    use frixel_wire::message::{GAIN_MAX, TELEMETRY_MAX_HZ};
+    use pyo3::types::{IntoPyDict, PyModuleMethods};
     use pyo3::{Bound, PyResult};
 
     #[pymodule_init]
@@ -56,6 +63,26 @@ mod _frixel {
         module.add("STROKES", TrialPlan::STROKES)?;
         module.add("SEEDS", TrialPlan::SEEDS)?;
         module.add("STROKE_S", TrialPlan::SECONDS)?;
+        module.add("COUNT_MAX", TrialPlan::COUNT_MAX)?;
+        module.add("DAY_S", STROKE_MAX_S)?;
+        module.add("TRIGGER_MAX_S", DURATION_MAX_S)?;
+        module.add("GAIN_MAX", GAIN_MAX)?;
+        module.add("TICK_HZ", Board::SIMULATOR.tick_hz)?;
+        module.add("VOLTAGE_MAX_V_RMS", VOLTAGE_MAX_V_RMS)?;
+        module.add("EXAMPLE_FINGER", example_finger().into_py_dict(module.py())?)?;
+        module.add("TELEMETRY_MAX_HZ", TELEMETRY_MAX_HZ)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
+    /// Fields of the bundled finger `example`.
+    fn example_finger() -> [(&'static str, f64); 5] {
+        let example = FingerProfile::example();
+        [
+            ("friction_coefficient", example.friction_coefficient),
+            ("normal_load_n", example.normal_load_n),
+            ("radius_mm", example.radius_mm),
+            ("stiffness_pa_per_m", Finger::<f64>::EXAMPLE.stiffness_pa_per_m),
+            ("skin_gap_um", example.skin_gap_um),
+        ]
     }
 }

@@ -1,6 +1,6 @@
 //! Compiles a scene to a program, and makes the checks that need the board's limits, other layers, or pictures.
 
-use frixel_layers::{Header, Record, electric_friction_max_n};
+use frixel_layers::{HALF_PERIOD_MIN_TICKS, Header, Record, electric_friction_max_n};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
 
@@ -18,18 +18,15 @@ use super::played_finger::PlayedFinger;
 use super::pool::Pool;
 use super::program::Program;
 use super::reach::{Reach, ReachError, carrier};
+use super::screen::EFFECTIVE_GAP_MAX_UM;
 use super::springs::SpringFit;
 use super::tick_cost;
 use super::titles::{LayerNumber, LayerTitle};
 use super::voltage::Voltage;
 use super::warning;
 
-/// Smallest number of ticks in half a carrier period that a board accepts.
-const HALF_PERIOD_MIN_TICKS: f64 = 4.0;
 /// Carrier frequency below which charge leaks through skin and felt friction falls, Hz (arXiv 2409.18725).
 const LEAKAGE_HZ: f64 = 250.0;
-/// Largest effective gap that a board accepts, um.
-const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 const MM: f64 = 1e-3;
 /// Factor by which a draft lowers its largest voltage until the contact is narrower than the finger.
 const NARROWER: f32 = 0.98;
@@ -230,10 +227,10 @@ fn half_period_ticks(scene: &Scene, tick_hz: u32, log: &mut Log) -> u32 {
     let place = scene.carrier.places.field("frequency_hz");
     let found = scene.carrier.frequency_hz;
     let ticks = f64::from(tick_hz) / (2.0 * found);
-    if ticks < HALF_PERIOD_MIN_TICKS {
-        let max = f64::from(tick_hz) / (2.0 * HALF_PERIOD_MIN_TICKS);
+    if ticks < f64::from(HALF_PERIOD_MIN_TICKS) {
+        let max = f64::from(tick_hz) / f64::from(2 * HALF_PERIOD_MIN_TICKS);
         log.add(place, FitMistake::CarrierTooFast { found, tick_hz, max });
-        return HALF_PERIOD_MIN_TICKS as u32;
+        return HALF_PERIOD_MIN_TICKS;
     }
     let whole = ticks.round();
     let rounded_hz = f64::from(tick_hz) / (2.0 * whole);

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
 use std::str::FromStr;
 
+use frixel_lab::simulate::STROKE_MAX_S;
 use frixel_scene::has_unit;
 
 /// Heading of the options that few people need, in the help of a command.
@@ -25,7 +26,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 
 /// Parses the duration of a play.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    number(text, above_zero_to(86_400.0), "a number of seconds above 0, at most a day")
+    number(text, above_zero_to(STROKE_MAX_S), "a number of seconds above 0, at most a day")
 }
 
 /// Parses the seed of random numbers.

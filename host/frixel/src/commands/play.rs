@@ -20,6 +20,7 @@ mod target;
 mod watch;
 mod with_log;
 
+use frixel_hil_sim::Board;
 use frixel_lab::simulate::{PlayOptions, PlayOptionsError};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -92,7 +93,7 @@ pub(super) struct PlayArgs {
         long,
         value_name = "N",
         default_value_t = 1000,
-        value_parser = argument::whole(1..=40_000_u32),
+        value_parser = argument::whole(1..=Board::SIMULATOR.tick_hz),
         help_heading = RARE
     )]
     csv_hz: u32,

@@ -29,13 +29,13 @@ pub(super) struct ScoreArgs {
     #[arg(long, default_value = "human", value_name = "NAME|FILE")]
     stroke: String,
     /// Play under N people of an assumed population, each with strokes of their own, not under the scene's finger.
-    #[arg(long, value_name = "N", value_parser = whole(1..=1000_u64))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     people: Option<u64>,
     /// Number of human strokes, of each person.
-    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = whole(1..=1000_u64))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     strokes: u64,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.
-    #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=1000_u64))]
+    #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     seeds: u64,
     /// Length of a generated stroke.
     #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS)]
@@ -109,5 +109,5 @@ fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
 
 /// Parses the median speed of a stroke.
 fn median_speed(text: &str) -> Result<f64, String> {
-    number(text, 1.0..=1000.0, "a speed from 1 to 1000 mm/s")
+    number(text, TrialPlan::MEDIAN_SPEEDS_MM_PER_S, "a speed from 1 to 1000 mm/s")
 }

@@ -10,7 +10,7 @@ use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
 use frixel_lab::GeneratedStroke;
 use frixel_lab::simulate::{
-    PlayOptions, PlayOptionsError, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, part_off_screen, side_mm,
+    PlayOptions, PlayOptionsError, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX, part_off_screen, side_mm,
 };
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::{Nearest, Shown};
@@ -51,7 +51,7 @@ pub(super) struct StrokeArgs {
     #[arg(
         long,
         value_name = "N",
-        value_parser = whole(1..=10_000_u32),
+        value_parser = whole(1..=TIMES_MAX),
         requires = "from",
         help_heading = RARE
     )]

@@ -1,5 +1,6 @@
 //! Downsampling of rows for pictures, in memory that does not grow with the length of a play.
 
+use frixel_felt::judge::SLIDE_MIN_M_PER_S;
 use frixel_felt::recorder::FeltRow;
 use frixel_scene::LayerTitle;
 
@@ -14,8 +15,6 @@ const PLACE_STEP_MM: f64 = 0.2;
 
 /// Largest number of speeds that are stored for the median.
 const SPEEDS_MAX: usize = 8_192;
-/// A finger slower than this is left out of the median, mm/s.
-const SLIDES_FROM_MM_S: f64 = 2.0;
 
 /// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
 #[derive(Clone, Debug)]
@@ -104,7 +103,7 @@ impl Trace {
         }
         self.last_place_mm = place_mm;
         self.push_span(Span::of(row, self.way_mm, layer));
-        if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= SLIDES_FROM_MM_S) {
+        if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= 1e3 * SLIDE_MIN_M_PER_S) {
             self.speeds.push(speed_mm_s);
         }
         self.push_place(row.x_mm.zip(row.y_mm).filter(|(x_mm, y_mm)| x_mm.is_finite() && y_mm.is_finite()));

@@ -1,7 +1,6 @@
 //! The finger whose run times are measured: that of the scene on its screen, or the example finger where that of the
 //! scene has no contact model.
 
-use frixel_lab::calibration::example_finger;
 use frixel_model::{Contact, Finger, ParameterError, Real};
 use frixel_scene::{Elasticity, FingerProfile, Screen};
 
@@ -26,7 +25,7 @@ impl DrawnFinger {
             (Elasticity::WinklerFuss { stiffness_pa_per_m }, _) => *stiffness_pa_per_m,
             (Elasticity::Soft { .. }, Ok(program)) => program.header.stiffness_pa_per_m.into(),
             _ => {
-                let stiffness_pa_per_m = example_finger().stiffness_pa_per_m;
+                let stiffness_pa_per_m = Finger::<f64>::EXAMPLE.stiffness_pa_per_m;
                 let example = Self::new(&FingerProfile::example(), &Screen::example(), stiffness_pa_per_m);
                 let words = format!("the example finger, as that of the scene has no contact model: {}", example.words);
                 return Self { words, ..example };

@@ -1,5 +1,6 @@
 //! The trials of one finger: its strokes, each as often as it is repeated.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use frixel_hil_sim::{Person, Stroke, StrokeError};
@@ -86,6 +87,10 @@ impl TrialPlan {
     pub const SEEDS: u64 = 2;
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
+    /// Largest number of people, of strokes, and of repetitions in one score.
+    pub const COUNT_MAX: u64 = 1000;
+    /// Median speeds of strokes of people, mm/s.
+    pub const MEDIAN_SPEEDS_MM_PER_S: RangeInclusive<f64> = 1.0..=1000.0;
 
     /// Trials of the first `people` of an assumed population, whom the board does not know.
     ///

@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::GeneratedStroke;
 
 /// Most times that a finger goes along a straight stroke.
-const TIMES_MAX: u32 = 100_000;
+pub const TIMES_MAX: u32 = 100_000;
 /// Longest stroke: one day, in s.
 pub const STROKE_MAX_S: f64 = 86_400.0;
 /// Duration of a generated stroke unless another is given, s, and the longest.

@@ -199,7 +199,9 @@ impl Plan {
         if !(0.25..=600.0).contains(&self.seconds) {
             return refuse("seconds", self.seconds.to_string(), "a duration from 0.25 to 600");
         }
-        if let Some(speed) = self.median_speed_mm_per_s.filter(|speed| !(1.0..=1000.0).contains(speed)) {
+        if let Some(speed) =
+            self.median_speed_mm_per_s.filter(|speed| !TrialPlan::MEDIAN_SPEEDS_MM_PER_S.contains(speed))
+        {
             return refuse("median_speed_mm_per_s", speed.to_string(), "a speed from 1 to 1000");
         }
         for (path, values) in &self.parameters {

@@ -18,8 +18,6 @@ from .errors import ParameterError
 
 SHOWN_MAX = 64
 """Most characters of a value in a message."""
-DAY_S = 86_400.0
-"""Longest play, s."""
 
 
 def refusal(name: str, expected: str, found: object) -> ParameterError:

@@ -16,6 +16,14 @@ __version__: str
 STROKES: int
 SEEDS: int
 STROKE_S: float
+COUNT_MAX: int
+DAY_S: float
+TRIGGER_MAX_S: float
+GAIN_MAX: float
+VOLTAGE_MAX_V_RMS: float
+EXAMPLE_FINGER: dict[str, float]
+TELEMETRY_MAX_HZ: int
+TICK_HZ: int
 
 def contact_scales(contact: Contact | SoftContact) -> tuple[float, float, float] | None: ...
 def eval_contact(

@@ -14,19 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from ._arguments import DAY_S, array, check_callable, flag, number, refusal, shown, whole
+from ._arguments import array, check_callable, flag, number, refusal, shown, whole
 from ._arguments import text as checked_text
 from .errors import FrixelError, ParameterError, PlayError
 from .recording import COLUMNS, Recording
 from .scene import Scene
 
 __all__ = ["Device", "Telemetry"]
-
-GAIN_MAX = 100.0
-"""Largest magnitude of a gain."""
-
-TELEMETRY_PER_S_MAX = 1000
-"""Most messages a second that a board sends."""
 
 WAIT_MAX_S = 1e9
 """Longest wait, s."""
@@ -213,7 +207,7 @@ class Device:
         if on is None and gain is None:
             raise ParameterError("a layer is changed by `on`, by `gain` or by both: give one")
         if gain is not None:
-            gain = number("gain", gain, -GAIN_MAX, GAIN_MAX)
+            gain = number("gain", gain, -_frixel.GAIN_MAX, _frixel.GAIN_MAX)
         return self._take(self._device.set_layer(_layer(layer), None if on is None else flag("on", on), gain))
 
     def trigger(self, layer: str | int, seconds: float | None = None) -> list[str]:
@@ -239,7 +233,7 @@ class Device:
             No scene plays, or the board has stopped, or is gone.
         """
         if seconds is not None:
-            seconds = number("seconds", seconds, 1e-6, 3600.0)
+            seconds = number("seconds", seconds, 1e-6, _frixel.TRIGGER_MAX_S)
         return self._take(self._device.trigger(_layer(layer), seconds))
 
     def stream(self, samples: ArrayLike, sample_hz: int) -> None:
@@ -306,7 +300,7 @@ class Device:
             Ctrl-C. The board is disarmed.
         """
         lasts_s = math.inf if seconds is None else number("seconds", seconds, 0.0, WAIT_MAX_S)
-        return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX))
+        return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, _frixel.TELEMETRY_MAX_HZ))
 
     def _messages(self, lasts_s: float, messages_per_s: int) -> Iterator[Telemetry]:
         # What was received before is old.
@@ -365,10 +359,10 @@ class Device:
             As `play`.
         """
         scene = Scene.of(scene)
-        seconds = number("seconds", seconds, 1e-3, DAY_S)
+        seconds = number("seconds", seconds, 1e-3, _frixel.DAY_S)
         if on_active is not None:
             check_callable("on_active", on_active)
-        messages_per_s = whole("messages_per_s", messages_per_s, 1, TELEMETRY_PER_S_MAX)
+        messages_per_s = whole("messages_per_s", messages_per_s, 1, _frixel.TELEMETRY_MAX_HZ)
         messages: list[Telemetry] = []
         try:
             self.play(scene)

@@ -32,9 +32,6 @@ __all__ = ["COLUMNS", "Recording", "replay"]
 COLUMNS: Mapping[str, tuple[str, str]] = {name: (unit, meaning) for name, unit, meaning in _frixel.play_fields()}
 """Unit and meaning of each column."""
 
-TICKS_PER_S = 40_000
-"""Ticks of the simulated board a second."""
-
 
 @dataclass(frozen=True, eq=False)
 class Recording(Mapping[str, NDArray[Any]]):

@@ -9,15 +9,12 @@ from html import escape
 from typing import Any
 
 from . import _frixel, _tables
-from ._arguments import DAY_S, flag, number, refusal, whole
+from ._arguments import flag, number, refusal, whole
 from .profiles import Finger, Screen, TouchSource
 from .scene import Scene
 from .stroke import Stroke
 
 __all__ = ["Score", "score"]
-
-COUNT_MAX = 1000
-"""Most people, strokes, repetitions and threads."""
 
 
 @dataclass(frozen=True)
@@ -144,14 +141,14 @@ def score(
     speed = median_speed_mm_per_s
     settings = _Settings(
         stroke,
-        None if people is None else whole("people", people, 1, COUNT_MAX),
-        whole("strokes", strokes, 1, COUNT_MAX),
-        whole("seeds", seeds, 1, COUNT_MAX),
-        number("seconds", seconds, 1e-3, DAY_S),
+        None if people is None else whole("people", people, 1, _frixel.COUNT_MAX),
+        whole("strokes", strokes, 1, _frixel.COUNT_MAX),
+        whole("seeds", seeds, 1, _frixel.COUNT_MAX),
+        number("seconds", seconds, 1e-3, _frixel.DAY_S),
         None if speed is None else number("median_speed_mm_per_s", speed, 1.0, 1000.0),
         None if touch is None else TouchSource.of(touch),
         flag("ideal", ideal),
-        0 if jobs is None else whole("jobs", jobs, 1, COUNT_MAX),
+        0 if jobs is None else whole("jobs", jobs, 1, _frixel.COUNT_MAX),
     )
     summary, words, plays, layers = _frixel.score_scene(scene.compiled, settings)
     return Score(json.loads(summary), words, {"score.csv": plays, "score-layers.csv": layers})

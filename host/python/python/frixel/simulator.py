@@ -12,7 +12,7 @@ from . import _frixel
 from ._arguments import flag, mapping, real, refusal, shown, whole
 from .errors import ParameterError
 from .profiles import Finger, Screen, TouchSource
-from .recording import TICKS_PER_S, Recording
+from .recording import Recording
 from .scene import Scene
 from .stroke import Stroke
 
@@ -81,7 +81,7 @@ class Simulator:
         self.person = None if person is None else whole("person", person, 0)
         self.touch = None if touch is None else TouchSource.of(touch)
         self.ideal, self.leakage = flag("ideal", ideal), flag("leakage", leakage)
-        self.rows_per_s = whole("rows_per_s", rows_per_s, 1, TICKS_PER_S)
+        self.rows_per_s = whole("rows_per_s", rows_per_s, 1, _frixel.TICK_HZ)
 
     def run(self, seconds: float | None = None) -> Recording:
         """Play the scene from its beginning.

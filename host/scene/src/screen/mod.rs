@@ -10,7 +10,7 @@ use super::compile_error::CompileError;
 use super::fields::read_text;
 use super::profile::Profile;
 
-pub(super) use read::read;
+pub(super) use read::{EFFECTIVE_GAP_MAX_UM, read};
 
 /// Parameters of a screen.
 ///

@@ -6,8 +6,8 @@ use crate::log::Log;
 use crate::mistake::FieldMistake;
 use crate::tables::{coating, screen};
 
-/// Largest effective gap that a board accepts.
-const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
+/// Largest effective gap that a board accepts ([`frixel_layers::Header::check`]).
+pub(in super::super) const EFFECTIVE_GAP_MAX_UM: f64 = 10_000.0;
 
 /// Reads a whole table, that of a file or `[screen]` of a scene.
 pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen> {

@@ -55,7 +55,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--trials", type=int, default=40, metavar="N", help="12 to 200, then up to 30 checks; %(default)s by default"
     )
-    made.add_argument("--voltage", type=float, default=150.0, metavar="V_RMS", help="highest voltage, at most 150")
+    highest = _frixel.VOLTAGE_MAX_V_RMS
+    voltage = f"highest voltage, at most {highest:g}"
+    made.add_argument("--voltage", type=float, default=highest, metavar="V_RMS", help=voltage)
     made.add_argument("--screen", default="example", help="name of the screen under the finger, for the profile")
     made.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the order of the strokes")
     made.add_argument("--arm", action="store_true", help="let a board that is not simulated drive its electrode")
@@ -153,8 +155,8 @@ def ask(
 def experiment(arguments: argparse.Namespace) -> None:
     """Run the session, and write the profile."""
     highest, trials = arguments.voltage, arguments.trials
-    if not 1.0 <= highest <= detection.VOLTAGE_MAX_V_RMS:
-        raise ParameterError(f"--voltage is 1 to {detection.VOLTAGE_MAX_V_RMS:.0f} V rms, found {highest:g}")
+    if not 1.0 <= highest <= _frixel.VOLTAGE_MAX_V_RMS:
+        raise ParameterError(f"--voltage is 1 to {_frixel.VOLTAGE_MAX_V_RMS:.0f} V rms, found {highest:g}")
     if not 12 <= trials <= 200:
         raise ParameterError(f"--trials is 12 to 200, found {trials}")
     if (arguments.port is None) == (arguments.observer is None):

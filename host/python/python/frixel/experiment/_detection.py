@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .. import model
+from .. import _frixel, model
 from .._arguments import number, refusal
 from .._arguments import text as checked_text
 from ..profiles import Finger
@@ -27,21 +27,19 @@ STIMULUS_HZ = 160.0
 FADE_S = 0.2
 """Fade of the stimulus at either end of a stroke, s, so that no click gives it away."""
 SAMPLE_HZ = 4000
-VOLTAGE_MAX_V_RMS = 150.0
 REACH = 0.999
 """Part of the highest voltage's friction that is asked for, so that rounding stays within reach."""
-NORMAL_LOAD_N = 0.5
 GAP_UM = 10.0
-CONTACT = model.Contact(radius_m=8e-3, stiffness_pa_per_m=1.8e7, friction_coefficient=0.5, gap_m=1e-6 * GAP_UM)
-"""Finger for which the board computes voltages. Any finger will do, because only the voltages count."""
-EXAMPLE = {
-    "friction_coefficient": 0.5,
-    "normal_load_n": NORMAL_LOAD_N,
-    "radius_mm": 8.0,
-    "stiffness_pa_per_m": 1.8e7,
-    "skin_gap_um": 4.74,
-}
-"""The numbers of the bundled finger `example`, which a perceptual profile keeps."""
+EXAMPLE = _frixel.EXAMPLE_FINGER
+"""The bundled finger `example`. The board computes voltages for it on a gap of its own, and a perceptual profile keeps
+its numbers: any finger will do, because only the voltages count."""
+NORMAL_LOAD_N = EXAMPLE["normal_load_n"]
+CONTACT = model.Contact(
+    radius_m=1e-3 * EXAMPLE["radius_mm"],
+    stiffness_pa_per_m=EXAMPLE["stiffness_pa_per_m"],
+    friction_coefficient=EXAMPLE["friction_coefficient"],
+    gap_m=1e-6 * GAP_UM,
+)
 LEVELS = [float(level) for level in np.geomspace(1e-3, 1.0, 31)]
 GRID = Grid(np.geomspace(2e-4, 2.0, 93), np.geomspace(0.8, 5.0, 7), np.array([0.0, 0.01, 0.03]))
 """Answers are a function of friction's amplitude with a slope of about 3.5 (Watson and Pelli 1983), or less."""
