@@ -26,8 +26,8 @@ use crate::pointer::PointerSample;
 use crate::request::Request;
 use crate::simulator::{FRAME_HEAD, Simulator};
 
-/// Ticks between two telemetry messages of a board outside of the page: 100 a second.
-const TELEMETRY_TICKS: u32 = 400;
+/// Telemetry messages a second of a board outside of the page.
+const TELEMETRY_HZ: u32 = 100;
 
 thread_local! {
     static INPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
@@ -247,7 +247,8 @@ pub extern "C" fn host_connect() -> i32 {
     respond(|| {
         HOST.set(None);
         let mut host = host::connect(LinkStream::new())?;
-        host.device_mut().subscribe(TELEMETRY_TICKS)?;
+        let tick_hz = host.device().hello().tick_hz;
+        host.device_mut().subscribe(tick_hz / TELEMETRY_HZ)?;
         let answer = answer::board(host.device().hello());
         HOST.set(Some(host));
         Ok(answer)

@@ -50,9 +50,6 @@ test("the right end of a slider of newtons is no more than the drive gives, and 
   await slider.focus();
   await press(page, "ArrowRight");
   assert.ok((await textOf(page)).includes(`high_n = ${high}\n`), "a key goes no further");
-  const row = page.locator(".layer-number", { has: slider });
-  assert.match(await row.getAttribute("title"), new RegExp(`^most friction; the drive reaches ${high} N$`));
-  assert.ok(await row.locator(".has-limit").isVisible());
 });
 
 test("the panel says whether its layer is felt, also while a number is dragged, and what numbers mean", async () => {

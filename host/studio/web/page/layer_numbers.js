@@ -9,10 +9,10 @@ import { layerFields } from "./completion.js";
 /** @import { Path, TomlText } from "./toml_text.js" */
 /** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
 /**
- * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `limit` the most
- * that the drive can give, where there is one; `min` and `max` are what a scene may have.
+ * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `min` and
+ * `max` what a scene may have.
  * @typedef {{ field: string, label: string, words: string, unit: string, value: number, path: Path, decimals: number,
- *   step: number, least: number, most: number, limit?: number, min: number, max: number }} LayerNumber
+ *   step: number, least: number, most: number, min: number, max: number }} LayerNumber
  */
 /**
  * A word of a layer that is chosen, and the words that it may be.
@@ -100,12 +100,10 @@ export function layerNumbers(schema, toml, at, kind, reach) {
     // A click counts from what it is added to.
     const [least, most] = ends(field, unit, value, isTotal && !field.startsWith("click"), reach);
     const name = LABELS[field] ?? label.replaceAll("_", " ");
-    const isLimited = unit === "N" || unit === "of reach";
     return {
       field,
       label: name,
       words: NUMBER_MEANINGS[name] ?? "",
-      ...(isLimited && most > 0 && { limit: most }),
       unit: field === "gain" ? "×" : unit,
       value,
       path: ["layer", at, field],

@@ -17,7 +17,6 @@ export class NumberRow {
   /** The slider is being dragged. */
   #isDragged = false;
   #slider;
-  #track;
   #input;
   /** @type {HTMLElement} */
   element;
@@ -30,18 +29,15 @@ export class NumberRow {
    * @param {string} layer
    */
   constructor(number, layer) {
-    const { label, unit, min, max, step, limit, words } = number;
+    const { label, unit, min, max, step, words } = number;
     this.#number = number;
     this.#slider = element("input", { type: "range", step: "any" });
     this.#input = element("input", { type: "number", min, max, step });
     this.nameLayer(layer);
-    this.#track = element("span", { className: limit === undefined ? "slider" : "slider has-limit" }, this.#slider);
     this.#showEnds();
-    const reach = limit === undefined ? "" : `the drive reaches ${numberText(inwards(limit, number), 4)} ${unit}`;
-    const title = [words, reach].filter(Boolean).join("; ");
     const said = element("span", {}, label, element("small", {}, words));
     const behind = element("span", {}, unit);
-    this.element = element("div", { className: "layer-number", title }, said, this.#track, this.#input, behind);
+    this.element = element("div", { className: "layer-number", title: words }, said, this.#slider, this.#input, behind);
     this.#listen();
   }
 
@@ -123,9 +119,8 @@ export class NumberRow {
   }
 
   #showEnds() {
-    const { least, most, limit } = this.#number;
+    const { least, most } = this.#number;
     Object.assign(this.#slider, { min: String(least), max: String(most) });
-    if (limit !== undefined) this.#track.style.setProperty("--limit", String((limit - least) / (most - least)));
   }
 }
 

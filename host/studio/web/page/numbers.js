@@ -12,10 +12,7 @@ import { notify } from "./notices.js";
 const DRIVES_ABOVE = 1;
 /** Numbers are means over this many samples, so that they can be read. */
 const SAMPLES = 40;
-/**
- * Speeds at which a finger begins to slide and stands still, mm/s. They are those of the board's standstill detector,
- * which drives nothing below them.
- */
+/** Speeds at which friction is shown and hidden, mm/s. They are apart, so that the numbers do not flicker. */
 const SLIDES_ABOVE = 5;
 const STANDS_BELOW = 2;
 const ABOVE =
@@ -53,7 +50,7 @@ export class Numbers {
     add("weber", "Above bare glass", "steps", ABOVE, "felt");
     const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
     add("voltage", "Drive voltage", "V", volts, "voltage");
-    add("speed", "Speed", "mm/s", "Speed of the simulated finger. Below 5 mm/s no friction is shown.");
+    add("speed", "Speed", "mm/s", "Speed of the simulated finger. A still finger feels no friction worth showing.");
     this.#show({});
   }
 
