@@ -8,8 +8,8 @@ use frixel_scene::reference::{Context, Reference};
 
 use super::fingertip::Fingertip;
 use super::likeness::Likeness;
-use super::measure::FINGERTIP_M;
 use super::moment::{Moment, ways_m};
+use super::thresholds::FINGERTIP_M;
 use super::touch::Sums;
 use super::{Step, total_n, visible_layers};
 

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::measure::FINGERTIP_M;
 use super::moment::{Moment, ways_m};
+use super::thresholds::FINGERTIP_M;
 
 /// Longest averaging time, in moments on either side: 50 ms, half a period at 10 Hz.
 const SIDE_MAX: usize = 100;

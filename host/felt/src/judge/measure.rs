@@ -22,13 +22,8 @@ use super::touch::{Sums, Touch, inner, stretches, ways};
 use super::{Element, Level, Step, Texture, contrast_within, has_texture, total_n};
 use crate::fidelity::FidelitySample;
 
-/// The longest way over which a change counts as one, m: a second of sliding at a usual speed. Assumed.
-pub(super) const WAY_MAX_M: f64 = 0.05;
 /// Shortest touch of a layer that has a level, in moments: 20 ms.
 const TOUCH_MIN: usize = 40;
-/// Distance from a border within which a fingertip cannot tell the side of a change, m (its spatial resolution is 1 to
-/// 2 mm).
-pub(super) const FINGERTIP_M: f64 = 0.002;
 /// Smallest change of the scene's friction treated as a change, N: the smallest amplitude with a threshold is 0.2 mN.
 const CHANGE_MIN_N: f64 = 4e-4;
 /// Search window on either side of a click, in moments: 100 ms.

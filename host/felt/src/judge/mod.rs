@@ -6,8 +6,8 @@
 //!
 //! A change of friction that a fingertip resolves (2 mm) is judged as a step, in Weber fractions of the total friction.
 //! A faster one is judged as a texture, against the threshold of touch at its frequency and the finger's own noise. An
-//! element is perceived by its contrast, texture, border or click, at the best of the three speeds. All thresholds and
-//! their sources are in `thresholds.rs`.
+//! element is perceived by its contrast, texture, border or click, at the best of the three speeds. Thresholds of
+//! perception and their sources are in `thresholds.rs`.
 
 mod advice;
 mod alike;
@@ -203,9 +203,9 @@ fn of_plays(element: &Element, over: Over, plays: &[PlayPerception]) -> LayerVer
     }
 }
 
-/// Speed below which the finger counts as resting, as on the board, m/s: friction does not follow the scene before it
-/// slides.
-const SLIDE_MIN_M_PER_S: f64 = 2e-3;
+/// Speed below which the finger counts as resting, m/s: friction does not follow the scene before it slides. It is the
+/// average speed from which the board's standstill detector counts a finger as moving.
+pub const SLIDE_MIN_M_PER_S: f64 = 2e-3;
 
 /// Smallest difference of two levels of friction in a scene that is not treated as flat, in Weber steps.
 pub const FLAT_WEBER_STEPS: f64 = 0.1;

@@ -4,14 +4,10 @@ use frixel_layers::Burst;
 use serde::Serialize;
 
 use super::element::Element;
-use super::measure::{FINGERTIP_M, Measured, WAY_MAX_M};
+use super::measure::Measured;
 use super::texture::SUMMED_S;
+use super::thresholds::{BURST_MIN_S, FINGERTIP_M, TOUCH_S, WAY_MAX_M};
 use super::{Step, THRESHOLD_UNCERTAINTY, Texture, Verdict};
-
-/// Duration of a touch of an element, s: strokes may miss a less frequent burst. Assumed.
-pub(super) const TOUCH_S: f64 = 1.0;
-/// Shortest perceptible burst, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
-pub(super) const BURST_MIN_S: f64 = 2e-3;
 
 /// A reason why an element is not certainly perceived, or not as designed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -24,6 +24,16 @@ pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
 /// Band of [`NATURAL_NOISE_RMS_N`], Hz.
 const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
 
+/// Distance from a border within which a fingertip cannot tell the side of a change, m: its spatial resolution is 1 to
+/// 2 mm (Basdogan's review).
+pub(super) const FINGERTIP_M: f64 = 0.002;
+/// The longest way over which a change counts as one, m: a second of sliding at a usual speed. Assumed.
+pub(super) const WAY_MAX_M: f64 = 0.05;
+/// Duration of a touch of an element, s: strokes may miss a less frequent burst. Assumed.
+pub(super) const TOUCH_S: f64 = 1.0;
+/// Shortest perceptible burst, s: the period of 500 Hz, the highest frequency with a threshold. Assumed.
+pub(super) const BURST_MIN_S: f64 = 2e-3;
+
 /// Frequency below which a change of friction counts as a step, and above which it counts as a texture, Hz. Assumed; it
 /// is the lowest frequency with a threshold.
 pub(super) const TEXTURE_MIN_HZ: f64 = 10.0;
@@ -195,8 +205,6 @@ pub(super) fn lag_gain(wavelength_mm: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::judge::element::PAUSE_MAX_S;
-    use crate::judge::measure::{FINGERTIP_M, WAY_MAX_M};
-    use crate::judge::reason::{BURST_MIN_S, TOUCH_S};
     use crate::judge::spectrum::POWER_PART_MIN;
     use crate::judge::texture::SUMMED_S;
 

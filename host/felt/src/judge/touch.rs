@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::measure::{FINGERTIP_M, SceneContrast, WAY_MAX_M};
+use super::measure::SceneContrast;
 use super::moment::{MOMENT_HZ, Moment, ways_m};
+use super::thresholds::{FINGERTIP_M, WAY_MAX_M};
 use super::{Step, Texture};
 
 /// Perception on a part of a run.
