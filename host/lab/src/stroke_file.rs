@@ -5,6 +5,7 @@ use std::io::Read;
 use frixel_hil_sim::{Point, Stroke, StrokeError, StrokeRow};
 use thiserror::Error;
 
+use crate::fit::FORCE_MAX_N;
 use crate::table::{Column, Place, Row, Table, TableError, Unit};
 
 const TIME: Column = Column::new("t_s", "seconds").converted(Unit::Seconds);
@@ -27,8 +28,6 @@ const OF_A_PLAY: [&str; 10] = [
 ];
 /// Largest first time that is on the stroke's own clock, s. Larger ones are uptime or Unix time.
 const START_MAX_S: f64 = 10.0;
-/// Largest plausible load, N. A larger one is in another unit.
-const LOAD_MAX_N: f64 = 50.0;
 const MM_PER_M: f64 = 1e3;
 
 /// Why a file is not a stroke.
@@ -144,7 +143,7 @@ fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<S
     };
     let place = Point { x_m: x_mm / MM_PER_M, y_m: y_mm / MM_PER_M };
     let normal_load_n = load.map(|load| row.real_if_known(load)).transpose()?.flatten();
-    match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= LOAD_MAX_N)) {
+    match normal_load_n.filter(|load_n| !(*load_n > 0.0 && *load_n <= FORCE_MAX_N)) {
         Some(found_n) => Err(StrokeFileError::Number {
             row: row.number(),
             column: LOAD.name,

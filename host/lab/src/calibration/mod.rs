@@ -20,7 +20,7 @@ pub use force_sensor::ForceSensor;
 pub use protocol::{Protocol, VOLTAGE_MAX_V_RMS};
 pub use simulated_finger::{simulated_finger, simulation_seed};
 
-use crate::fit::Row;
+use crate::fit::{FORCE_MAX_N, Row};
 use crate::table::{Column, Reading, Table, TableError, Unit, whole_rows};
 
 /// A sample of a force sensor, on the sensor's own clock.
@@ -51,8 +51,6 @@ pub enum CalibrationError {
     Write(csv::Error),
 }
 
-/// Largest plausible force, in newtons. A larger one is in another unit.
-const FORCE_MAX_N: f64 = 50.0;
 const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
 const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
 const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);

@@ -63,6 +63,7 @@ pub use preparation::Preparation;
 pub use profile::profile;
 pub use recording::Division;
 use recording::Recording;
+pub(crate) use rules::FORCE_MAX_N;
 use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::{Summary, words};
 pub use table::{Data, Row, data, rows};

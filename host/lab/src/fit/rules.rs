@@ -22,8 +22,8 @@ const LOAD_TOLERANCE: f64 = 0.15;
 const NEAR_TOP: f64 = 0.8;
 /// Least ratio of the highest to the lowest voltage from which an exponent can be told.
 const VOLTAGE_RATIO_MIN: f64 = 1.15;
-/// Largest force of a finger on a touchscreen, in newtons.
-const FORCE_MAX_N: f64 = 50.0;
+/// Largest plausible force of a finger on a touchscreen, in newtons. A larger one is in another unit.
+pub(crate) const FORCE_MAX_N: f64 = 50.0;
 /// Smallest mean time for which a voltage rests, in seconds: `frixel finger calibrate` switches every 20 to 30 ms, and
 /// the samples of a carrier of 60 Hz change by a fifth of the peak every 2 ms.
 const REST_MIN_S: f64 = 8e-3;
