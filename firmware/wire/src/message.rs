@@ -59,7 +59,7 @@ pub enum Command {
     ClearFault,
     /// Starts periodic telemetry, or stops it if the period is zero.
     Subscribe {
-        /// Ticks between two telemetry messages: at least [`telemetry_period_min_ticks`], or zero.
+        /// Ticks between two telemetry messages: at least that of [`TELEMETRY_MAX_HZ`], or zero.
         period_ticks: u32,
     },
     /// Reports the position of the finger, for a board that takes touch from the host.
@@ -134,9 +134,9 @@ pub const GAIN_MAX: f64 = 100.0;
 /// Highest rate of telemetry, messages per second.
 pub const TELEMETRY_MAX_HZ: u32 = 1000;
 
-/// Shortest telemetry period of a board with this tick rate, in ticks.
-pub const fn telemetry_period_min_ticks(tick_hz: u32) -> u32 {
-    tick_hz.div_ceil(TELEMETRY_MAX_HZ)
+/// Telemetry period in ticks of a board with this tick rate, for at most `messages_hz` messages per second; above 0.
+pub const fn telemetry_period_ticks(tick_hz: u32, messages_hz: u32) -> u32 {
+    tick_hz.div_ceil(messages_hz)
 }
 
 /// A message from the board.

@@ -12,7 +12,7 @@ use frixel_wire::hello::{
 };
 use frixel_wire::message::{
     Accepted, Command, ConfigField, ConfigRefusal, FAULT_TEXT_MAX_LEN, FAULT_TEXT_PIECE_LEN, FromBoard, Refusal,
-    STREAM_START_LEVEL_MAX, TELEMETRY_MAX_HZ, telemetry_period_min_ticks,
+    STREAM_START_LEVEL_MAX, TELEMETRY_MAX_HZ, telemetry_period_ticks,
 };
 use frixel_wire::payload::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, Payload, SAMPLES_MAX};
 use frixel_wire::scene::{CURVE_POINTS_MAX, POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX, SceneError};
@@ -263,7 +263,7 @@ fn constants_are_those_of_the_text() {
     assert_eq!((RECORDS_MAX, POINTS_MAX), (64, 128));
     assert_eq!((POLYGON_POINTS_MAX, CURVE_POINTS_MAX), (32, 16));
     assert_eq!((SceneError::HEADER, ConfigRefusal::WHOLE_SCENE), (255, 255));
-    assert_eq!([40_000, 8_000, 999].map(telemetry_period_min_ticks), [40, 8, 1]);
+    assert_eq!([40_000, 8_000, 44_100, 999].map(|tick_hz| telemetry_period_ticks(tick_hz, 1_000)), [40, 8, 45, 1]);
     assert_eq!(TELEMETRY_MAX_HZ, 1_000);
     assert_eq!((SAMPLES_MAX, STREAM_START_LEVEL_MAX), (90, 800));
     assert_eq!((FAULT_TEXT_PIECE_LEN, FAULT_TEXT_MAX_LEN), (32, 192));

@@ -9,7 +9,7 @@ use frixel_layers::Header;
 use frixel_scene::Program;
 use frixel_wire::fault::State;
 use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause};
-use frixel_wire::message::{ConfigField, Refusal, telemetry_period_min_ticks};
+use frixel_wire::message::{ConfigField, Refusal, TELEMETRY_MAX_HZ, telemetry_period_ticks};
 
 use super::bench::{BOARD, Bench, CONSTANT, TICK, program_for};
 use crate::emulator;
@@ -54,12 +54,15 @@ fn after_power_on_the_board_says_hello_and_its_output_is_zero() {
 #[test]
 fn telemetry_comes_a_thousand_times_a_second() {
     let Some(image) = emulator::pico_image() else { return };
-    let mut host = Bench::just_on(&image).connect();
-    host.subscribe(telemetry_period_min_ticks(BOARD.tick_hz)).unwrap();
+    let mut host = Bench::new(&image).play(CONSTANT);
+    let period_ticks = telemetry_period_ticks(BOARD.tick_hz, TELEMETRY_MAX_HZ);
+    let refused = host.subscribe(period_ticks - 1).unwrap_err();
+    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::TelemetryTooFast { .. }, .. }), "{refused}");
+    host.subscribe(period_ticks).unwrap();
     let mut messages = 0;
     let mut count = |event| messages += u32::from(matches!(event, Event::Telemetry(_)));
     host.wait(Duration::from_millis(100), &mut count).unwrap();
-    assert!(messages >= 99, "{messages}");
+    assert!((99..=101).contains(&messages), "{messages}");
 }
 
 /// A board that has stored no limits was never measured.

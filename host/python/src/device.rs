@@ -13,7 +13,7 @@ use frixel_lab::recording::Metadata;
 use frixel_scene::{Program, compile};
 use frixel_wire::fault::State;
 use frixel_wire::hello::Hello;
-use frixel_wire::message::Telemetry;
+use frixel_wire::message::{Telemetry, telemetry_period_ticks};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
@@ -175,7 +175,10 @@ impl Device {
 
     /// Requests telemetry so many times a second; 0 ends it.
     fn subscribe(&self, py: Python<'_>, messages_per_s: u32) -> PyResult<Answer> {
-        let period_ticks = self.hello.tick_hz.checked_div(messages_per_s).unwrap_or(0);
+        let period_ticks = match messages_per_s {
+            0 => 0,
+            _ => telemetry_period_ticks(self.hello.tick_hz, messages_per_s),
+        };
         self.ask(py, Request::Subscribe { period_ticks })
     }
 
@@ -195,7 +198,7 @@ impl Device {
     /// Metadata of a play on this board, as JSON, for its recording.
     fn made(&self, py: Python<'_>, messages_per_s: u32) -> PyResult<String> {
         let metadata = Metadata {
-            ticks_per_row: self.hello.tick_hz.checked_div(messages_per_s).unwrap_or(0),
+            ticks_per_row: telemetry_period_ticks(self.hello.tick_hz, messages_per_s),
             ..Metadata::new("board", Some(&self.hello), self.hello.board.is_simulated(), None)
         };
         let made = Made { metadata, files: BTreeMap::new(), later_scenes: Vec::new(), markers: Vec::new() };

@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use frixel_felt::judge::{WEBER_FRACTION, weber_steps};
 use frixel_wire::fault::{Fault, State};
+use frixel_wire::message::telemetry_period_ticks;
 use serde_json::{Value, json};
 
 use crate::additions;
@@ -248,7 +249,7 @@ pub extern "C" fn host_connect() -> i32 {
         HOST.set(None);
         let mut host = host::connect(LinkStream::new())?;
         let tick_hz = host.device().hello().tick_hz;
-        host.device_mut().subscribe(tick_hz / TELEMETRY_HZ)?;
+        host.device_mut().subscribe(telemetry_period_ticks(tick_hz, TELEMETRY_HZ))?;
         let answer = answer::board(host.device().hello());
         HOST.set(Some(host));
         Ok(answer)

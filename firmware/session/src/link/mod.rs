@@ -11,7 +11,7 @@ use frixel_control::Status;
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{
-    Accepted, Answer, Command, FromBoard, Refusal, Request, Telemetry, telemetry_period_min_ticks,
+    Accepted, Answer, Command, FromBoard, Refusal, Request, TELEMETRY_MAX_HZ, Telemetry, telemetry_period_ticks,
 };
 use heapless::Deque;
 
@@ -164,7 +164,7 @@ impl Link {
 
     /// Sends telemetry with this period from now on; 0 ends it.
     pub(crate) fn subscribe(&mut self, period_ticks: u32, tick_hz: u32) -> Result<Accepted, Refusal> {
-        let period_min_ticks = telemetry_period_min_ticks(tick_hz);
+        let period_min_ticks = telemetry_period_ticks(tick_hz, TELEMETRY_MAX_HZ);
         if period_ticks != 0 && period_ticks < period_min_ticks {
             return Err(Refusal::TelemetryTooFast { period_min_ticks });
         }

@@ -13,6 +13,7 @@ use frixel_files::{FileWriter, Inputs, OutputFile};
 use frixel_lab::recording::{Metadata, stroke_fields};
 use frixel_lab::table::{Column, Table, TableError};
 use frixel_wire::hello::Hello;
+use frixel_wire::message::telemetry_period_ticks;
 
 use crate::commands::error::cut_off;
 use crate::commands::interrupt::Interrupt;
@@ -84,7 +85,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
 }
 
 fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interrupt, rows: &mut Rows) -> Result<()> {
-    device.subscribe(device.hello().tick_hz / ROWS_HZ)?;
+    device.subscribe(telemetry_period_ticks(device.hello().tick_hz, ROWS_HZ))?;
     let ends = args.seconds.map_or("Ctrl-C ends the record".to_owned(), |seconds| format!("recording for {seconds} s"));
     note(format_args!("slide a finger over the screen; {ends}"));
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));

@@ -12,7 +12,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use frixel_driver::{Device, Event, SerialLink};
 use frixel_wire::fault::State;
-use frixel_wire::message::TickTimes;
+use frixel_wire::message::{TickTimes, telemetry_period_ticks};
 
 use crate::commands::interrupt::Interrupt;
 use crate::commands::port;
@@ -106,7 +106,8 @@ fn round_trip(device: &mut Device<SerialLink>) -> Result<Check> {
 /// Checks the board's clock, the rate of its telemetry, and that its output is zero.
 fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3]> {
     let mut messages = Vec::new();
-    device.subscribe(tick_hz / MESSAGES_HZ)?;
+    let period_ticks = telemetry_period_ticks(tick_hz, MESSAGES_HZ);
+    device.subscribe(period_ticks)?;
     device.wait(TELEMETRY, &mut |event| {
         if let Event::Telemetry(telemetry) = event {
             messages.push((Instant::now(), telemetry));
@@ -117,7 +118,7 @@ fn telemetry(device: &mut Device<SerialLink>, tick_hz: u32) -> Result<[Check; 3]
     if let (Some((first_at, first)), Some((last_at, last))) = (messages.first(), messages.last()) {
         let board_s = f64::from(last.tick.wrapping_sub(first.tick)) / f64::from(tick_hz);
         clock_percent = 100.0 * (board_s / last_at.duration_since(*first_at).as_secs_f64() - 1.0).abs();
-        let expected = board_s * f64::from(MESSAGES_HZ) + 1.0;
+        let expected = board_s * f64::from(tick_hz) / f64::from(period_ticks) + 1.0;
         lost_percent = 100.0 * (1.0 - messages.len() as f64 / expected).max(0.0);
     }
     let is_zero = messages.iter().all(|(_, telemetry)| telemetry.dac_code == 0);

@@ -11,7 +11,7 @@ use frixel_hil_sim::RigConfig;
 use frixel_play::{Feed, Simulation};
 use frixel_scene::{Program, Scene};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::message::{TELEMETRY_MAX_HZ, telemetry_period_min_ticks};
+use frixel_wire::message::TELEMETRY_MAX_HZ;
 
 use super::super::stroke::{from_file, note_off_screen};
 use super::target::Target;
@@ -200,7 +200,7 @@ fn note_streams(program: &Program, has_feed: bool) {
 /// Ticks between two telemetry messages: normally one message per row. If the reference depends on the past, the
 /// board sends as many messages as it can, and each row is their mean.
 fn telemetry_period_ticks(program: &Program, ticks_per_row: u32, tick_hz: u32) -> u32 {
-    let least = telemetry_period_min_ticks(tick_hz);
+    let least = frixel_wire::message::telemetry_period_ticks(tick_hz, TELEMETRY_MAX_HZ);
     let divides = |period: &u32| ticks_per_row.is_multiple_of(*period);
     if program.has_history() { (least..=ticks_per_row).find(divides).unwrap_or(ticks_per_row) } else { ticks_per_row }
 }

@@ -10,7 +10,7 @@ use frixel_lab::calibration::{BoardRow, Protocol, VOLTAGE_MAX_V_RMS, write_board
 use frixel_play::{Feed, Player};
 use frixel_scene::{Program, Scene, compile};
 use frixel_wire::hello::BoardLimits;
-use frixel_wire::message::TELEMETRY_MAX_HZ;
+use frixel_wire::message::{TELEMETRY_MAX_HZ, telemetry_period_ticks};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::CalibrateArgs;
@@ -24,6 +24,11 @@ use frixel_files::OutputFile;
 
 /// Rows a second of the recording.
 pub(super) const ROW_HZ: u32 = TELEMETRY_MAX_HZ;
+
+/// Ticks between two rows, and between two telemetry messages of a board at a port.
+pub(super) fn row_ticks(tick_hz: u32) -> u32 {
+    telemetry_period_ticks(tick_hz, ROW_HZ)
+}
 
 /// A protocol that is ready to play on a board.
 pub(super) struct Plan {
@@ -51,7 +56,7 @@ impl Plan {
     /// Starts to play the protocol.
     pub(super) fn start<L: RecordedLink>(&self, device: Device<L>, telemetry_ticks: u32) -> Result<Player<L>> {
         let ticks = (self.protocol.duration_s() * f64::from(self.tick_hz)) as u64;
-        let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, self.tick_hz / ROW_HZ);
+        let recorder = Recorder::new(&self.program, &self.limits, self.tick_hz, ticks, row_ticks(self.tick_hz));
         let mut player = Player::recording(device, recorder.map_err(of_finger)?);
         player.start(self.program.clone(), telemetry_ticks, &mut ignore_progress)?;
         let samples = self.protocol.samples().map_err(of_finger)?;

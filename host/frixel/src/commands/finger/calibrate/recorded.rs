@@ -10,7 +10,7 @@ use frixel_lab::calibration::{BoardRow, ForceRow, ForceSensor, read_forces, simu
 use frixel_play::RigStream;
 use frixel_wire::hello::Hello;
 
-use super::plan::{Plan, ROW_HZ};
+use super::plan::{Plan, ROW_HZ, row_ticks};
 use super::{CUT_OFF, CalibrateArgs, forces};
 use crate::commands::error::{of_finger, of_generated_stroke, reading};
 use crate::commands::interrupt::Interrupt;
@@ -93,7 +93,7 @@ pub(super) fn on_port(
     } else {
         None
     };
-    let mut player = plan.start(waiting::watch(device, interrupt), hello.tick_hz / ROW_HZ)?;
+    let mut player = plan.start(waiting::watch(device, interrupt), row_ticks(hello.tick_hz))?;
     let duration = Duration::from_secs_f64(plan.protocol.duration_s());
     let board = match &mut partial {
         Some(partial) => plan.play(&mut player, interrupt, duration, partial)?,
