@@ -63,8 +63,10 @@ fn a_check_and_a_score_agree() {
         let checked = checked(&path);
         let layers = score["layers"].as_array().unwrap();
         assert_eq!(layers.len(), checked.len(), "{name}");
-        for (layer, LayerVerdict { layer: title, verdict, .. }) in layers.iter().zip(&checked) {
+        for (layer, LayerVerdict { layer: title, verdict, contrast, .. }) in layers.iter().zip(&checked) {
             assert_eq!(layer["layer"], title.as_str());
+            let difference = layer["contrast_weber_steps"].as_f64().unwrap() - contrast.weber_steps;
+            assert!(difference.abs() < 1e-12, "{name}: {layer} has another contrast, by {difference}");
             assert_eq!(layer["simulated_fingers"][verdict.key()], 1, "{name}: {layer}");
         }
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use frixel::scene_file;
 use frixel_hil_sim::{RigConfig, Stroke, WorldOptions};
 use frixel_lab::score::{Score, Trial};
-use frixel_play::TO_THE_END;
+use frixel_play::{SimulationError, TO_THE_END, break_if};
 use frixel_scene::{Program, Scene, compile};
 use serde_json::Value;
 
@@ -42,6 +42,17 @@ fn an_output_forced_to_zero_keeps_nothing() {
     assert!(mean(&program(), "contrast_kept") > 0.9);
     assert!(mean(&zero, "contrast_kept") < 0.01);
     assert!(mean(&zero, "error_below_40_hz") > 0.9);
+}
+
+#[test]
+fn an_interrupted_score_is_none() {
+    let stroke = Stroke::human(0.12, 0.08, 1.5, Some(0.1), 1).unwrap();
+    let trial = Trial { stroke_name: "human 1".to_owned(), stroke: stroke.into(), seed: 1, finger: None };
+    let goes_on = || break_if(true);
+    for trials in [vec![], vec![trial]] {
+        let found = Score::of(&program(), &WorldOptions::default(), &trials, &goes_on);
+        assert!(matches!(found, Err(SimulationError::Interrupted)));
+    }
 }
 
 /// The finger's own noise and load changes are no contrast of the scene.

@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use frixel_felt::check::feel;
 use frixel_felt::judge::{Advice, Judgement, LayerVerdict, Reason, Verdict};
 use frixel_hil_sim::{RigConfig, WorldOptions};
-use frixel_play::{TO_THE_END, judge};
+use frixel_play::{SimulationError, TO_THE_END, break_if, judge};
 use frixel_scene::{Program, Scene, compile};
 use frixel_testkit::examples;
 
@@ -83,6 +84,18 @@ fn no_verdict_is_worse_than_that_of_a_smaller_element() {
         let said: Vec<String> = found.iter().map(feel::sentence).collect();
         assert!(found.is_sorted_by_key(|found| sureness(found.verdict)), "{said:#?}");
         assert_eq!(found.last().unwrap().verdict, Verdict::Felt, "{said:#?}");
+    }
+}
+
+#[test]
+fn an_interrupted_judgement_has_no_verdicts() {
+    let (rig, world) = (RigConfig::default(), WorldOptions::default());
+    for asked_max in [0, 2] {
+        let asked = AtomicUsize::new(0);
+        let goes_on = || break_if(asked.fetch_add(1, Ordering::Relaxed) >= asked_max);
+        let program = program(&format!("version = 1\n{}", bar(10.0)));
+        let found = judge(&program, &rig, &world, Advice::Omitted, &goes_on);
+        assert!(matches!(found, Err(SimulationError::Interrupted)), "{found:?}");
     }
 }
 

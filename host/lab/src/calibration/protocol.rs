@@ -7,8 +7,6 @@ use frixel_model::{Contact, Finger, ParameterError};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// Highest voltage of the protocol, in volts rms.
-const VOLTAGE_V_RMS: f64 = 150.0;
 /// The voltages of the protocol as parts of the highest: 75, 106 and 150 V, a factor of two in the square each.
 const PARTS: [f64; 3] = [0.5, core::f64::consts::FRAC_1_SQRT_2, 1.0];
 /// Half-periods of the envelope, in seconds: near 20 Hz natural friction is quiet, and a random length meets neither
@@ -53,7 +51,7 @@ pub struct Protocol {
 impl Protocol {
     /// A minute of strokes of 70 mm at 44 mm/s on average, up to this voltage and 150 V rms.
     pub fn new(voltage_max_v_rms: f64, seed: u64) -> Self {
-        let highest = VOLTAGE_V_RMS.min(voltage_max_v_rms);
+        let highest = VOLTAGE_MAX_V_RMS.min(voltage_max_v_rms);
         let voltages_v_rms = PARTS.iter().map(|part| part * highest).collect();
         Self { strokes: 36, stroke_s: 1.6, pause_s: 0.2, length_mm: 70.0, voltages_v_rms, seed }
     }

@@ -121,9 +121,6 @@ impl Score {
         let program = &switched_on(program);
         let mut plays: Vec<TrialScore> = Vec::with_capacity(trials.len());
         for trials in trials.chunks(PLAYS_PER_THREAD * rayon::current_num_threads()) {
-            if goes_on().is_break() {
-                return Err(SimulationError::Interrupted);
-            }
             let felt = |trial: &Trial| {
                 trial.play(program, world, goes_on).map(|samples| {
                     let fidelity = Fidelity::of(&samples);
@@ -139,6 +136,9 @@ impl Score {
                 let stroke = trial.stroke_name.clone();
                 plays.push(TrialScore { person, stroke, seed: trial.seed, fidelity });
             }
+        }
+        if goes_on().is_break() {
+            return Err(SimulationError::Interrupted);
         }
         let groups = independent(&plays);
         let layers = layers::layers(program, &fingers);

@@ -87,7 +87,7 @@ impl TrialPlan {
     pub const SEEDS: u64 = 2;
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
-    /// Largest number of people, of strokes, and of repetitions in one score.
+    /// Largest number of people, of strokes, and of repetitions that one score takes as options.
     pub const COUNT_MAX: u64 = 1000;
     /// Median speeds of strokes of people, mm/s.
     pub const MEDIAN_SPEEDS_MM_PER_S: RangeInclusive<f64> = 1.0..=1000.0;
