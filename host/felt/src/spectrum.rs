@@ -81,11 +81,16 @@ impl Spectrum {
 
 /// Replaces a signal of any length by its discrete Fourier transform.
 ///
-/// Bluestein's algorithm needs transforms of a power of two only. A planner would bring every algorithm into the page.
+/// Other lengths than powers of two use Bluestein's algorithm. A planner would bring every algorithm into the page.
 fn transform(signal: &mut [Complex<f64>]) {
-    if let Some(longer) = (2 * signal.len()).checked_next_power_of_two().filter(|_| !signal.is_empty()) {
-        let radix4 = Arc::new(Radix4::new(longer, FftDirection::Forward));
-        BluesteinsAlgorithm::new(signal.len(), radix4).process(signal);
+    let radix4 = |length| Radix4::new(length, FftDirection::Forward);
+    match signal.len() {
+        0 => {}
+        length if length.is_power_of_two() => radix4(length).process(signal),
+        length => {
+            let inner = Arc::new(radix4((2 * length).next_power_of_two()));
+            BluesteinsAlgorithm::new(length, inner).process(signal);
+        }
     }
 }
 
@@ -98,6 +103,20 @@ pub fn band_rms(samples: &[f64], sample_hz: u32, band_hz: Range<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_transform_of_any_length_is_the_sum_that_defines_it() {
+        for length in 0..40_u32 {
+            let signal: Vec<_> = (0..length).map(|at| Complex::new(libm::sin(f64::from(at * at)), 0.0)).collect();
+            let mut found = signal.clone();
+            transform(&mut found);
+            for (bin, found) in (0..length).zip(found) {
+                let turn = |at: u32| Complex::cis(-TAU * f64::from(bin * at) / f64::from(length));
+                let expected: Complex<f64> = (0..length).zip(&signal).map(|(at, value)| turn(at) * value).sum();
+                assert!((found - expected).norm() < 1e-12, "bin {bin} of {length}: {found} for {expected}");
+            }
+        }
+    }
 
     #[test]
     fn a_sine_is_in_its_band_alone() {

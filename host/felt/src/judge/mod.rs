@@ -203,8 +203,7 @@ fn of_plays(element: &Element, over: Over, plays: &[PlayPerception]) -> LayerVer
     }
 }
 
-/// Speed below which the finger counts as resting, m/s: friction does not follow the scene before it slides. It is the
-/// average speed from which the board's standstill detector counts a finger as moving.
+/// Speed below which the finger counts as resting, m/s: friction does not follow the scene before it slides.
 pub const SLIDE_MIN_M_PER_S: f64 = 2e-3;
 
 /// Smallest difference of two levels of friction in a scene that is not treated as flat, in Weber steps.
