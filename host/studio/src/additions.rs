@@ -2,8 +2,10 @@
 
 mod room;
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::layer_text::{self, TextError};
 use room::{BoxMm, roomiest};
@@ -208,8 +210,9 @@ static ADDITIONS: [Addition; 11] = [
     },
 ];
 
-/// The kinds of layer that no button adds, as a person begins to write one.
-const WRITTEN: [&str; 2] = [
+/// Layers as a person begins to write one: the kinds that no button adds, and an edge without its click.
+const WRITTEN: [&str; 3] = [
+    "kind = \"edge\"\nridge_fraction = 0.8\n",
     "kind = \"speed\"\nspeeds_mm_per_s = [20, 150]\nfactors = [0.3, 1]\n",
     "kind = \"stream\"\nlow_fraction = 0\nhigh_fraction = 0.8\n",
 ];
@@ -268,20 +271,19 @@ pub(crate) fn list() -> Result<Value, TextError> {
 }
 
 /// For the page's completion: the values that a new layer of each kind has, as TOML by its fields, by the kind. They
-/// are those of the first layer of that kind that can be added.
+/// are those of [`WRITTEN`], and else of the first layer of that kind that can be added.
 pub(crate) fn first_values() -> Value {
     let listed = ADDITIONS.iter().map(|addition| addition.laid(SCREEN_MM, None).0);
-    let mut kinds = Map::new();
-    for lines in listed.chain(WRITTEN.map(str::to_owned)) {
-        let mut values: Map<String, Value> = lines
-            .lines()
-            .filter_map(|line| line.split_once(" = "))
-            .map(|(field, value)| (field.to_owned(), value.into()))
-            .collect();
-        let kind = values.remove("kind").unwrap_or_default();
-        kinds.entry(kind.as_str().unwrap_or_default().trim_matches('"')).or_insert(values.into());
+    let mut kinds: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    for lines in WRITTEN.map(str::to_owned).into_iter().chain(listed) {
+        let mut values: BTreeMap<&str, &str> = lines.lines().filter_map(|line| line.split_once(" = ")).collect();
+        let kind = values.remove("kind").unwrap_or_default().trim_matches('"');
+        let first = kinds.entry(kind.to_owned()).or_default();
+        for (field, value) in values {
+            first.entry(field.to_owned()).or_insert_with(|| value.to_owned());
+        }
     }
-    kinds.into()
+    json!(kinds)
 }
 
 /// A layer that the page adds.

@@ -91,6 +91,7 @@ test("completion offers what the kind of a layer has, and inserts what one of it
     const found = await problems(page, text);
     assert.deepEqual([found.layers, found.isDraft], [1, false], `${text}\n${found.said.join("\n")}`);
   }
+  assert.match(await completed("edge"), /\nridge_fraction = 0\.8\b/);
   const kept = await completed("grating", "wavelength_mm = 3\nlow_n = 0.0\n");
   assert.match(kept, /^version = 1\n\[\[layer\]\]\nwavelength_mm = 3\nlow_n = 0\.0\nkind = "grating"\nhigh_fraction = 0\.8$/);
 });

@@ -32,7 +32,7 @@ test("a slider of a number that was not written keeps its row and its ends while
   assert.equal(await slider.evaluate(({ max, value }) => `${value} of ${max}`), "3 of 5");
 });
 
-test("the right end of a slider of newtons is no more than the drive gives, and is marked", async () => {
+test("the right end of a slider of newtons is no more than the drive gives", async () => {
   const page = await openEditing();
   await writeScene(page, WHOLE_SCREEN_GRATING);
   await page.mouse.click(...(await onPage(page, 60, 40)));

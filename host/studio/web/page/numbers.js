@@ -50,7 +50,7 @@ export class Numbers {
     add("weber", "Above bare glass", "steps", ABOVE, "felt");
     const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
     add("voltage", "Drive voltage", "V", volts, "voltage");
-    add("speed", "Speed", "mm/s", "Speed of the simulated finger. A still finger feels no friction worth showing.");
+    add("speed", "Speed", "mm/s", "Speed of the simulated finger. Friction is shown while it slides.");
     this.#show({});
   }
 
