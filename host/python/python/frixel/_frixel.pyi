@@ -17,7 +17,8 @@ STROKES: int
 SEEDS: int
 STROKE_S: float
 COUNT_MAX: int
-DAY_S: float
+MEDIAN_SPEEDS_MM_PER_S: tuple[float, float]
+STROKE_MAX_S: float
 TRIGGER_MAX_S: float
 GAIN_MAX: float
 VOLTAGE_MAX_V_RMS: float

@@ -359,7 +359,7 @@ class Device:
             As `play`.
         """
         scene = Scene.of(scene)
-        seconds = number("seconds", seconds, 1e-3, _frixel.DAY_S)
+        seconds = number("seconds", seconds, 1e-3, _frixel.STROKE_MAX_S)
         if on_active is not None:
             check_callable("on_active", on_active)
         messages_per_s = whole("messages_per_s", messages_per_s, 1, _frixel.TELEMETRY_MAX_HZ)

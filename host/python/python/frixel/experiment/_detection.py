@@ -31,8 +31,7 @@ REACH = 0.999
 """Part of the highest voltage's friction that is asked for, so that rounding stays within reach."""
 GAP_UM = 10.0
 EXAMPLE = _frixel.EXAMPLE_FINGER
-"""The bundled finger `example`. The board computes voltages for it on a gap of its own, and a perceptual profile keeps
-its numbers: any finger will do, because only the voltages count."""
+"""The numbers of the bundled finger `example`, which a perceptual profile keeps."""
 NORMAL_LOAD_N = EXAMPLE["normal_load_n"]
 CONTACT = model.Contact(
     radius_m=1e-3 * EXAMPLE["radius_mm"],
@@ -40,6 +39,7 @@ CONTACT = model.Contact(
     friction_coefficient=EXAMPLE["friction_coefficient"],
     gap_m=1e-6 * GAP_UM,
 )
+"""Finger for which the board computes voltages. Any finger will do, because only the voltages count."""
 LEVELS = [float(level) for level in np.geomspace(1e-3, 1.0, 31)]
 GRID = Grid(np.geomspace(2e-4, 2.0, 93), np.geomspace(0.8, 5.0, 7), np.array([0.0, 0.01, 0.03]))
 """Answers are a function of friction's amplitude with a slope of about 3.5 (Watson and Pelli 1983), or less."""
