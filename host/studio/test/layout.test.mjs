@@ -9,6 +9,19 @@ import { openStudio, resize } from "./page.mjs";
 
 const SEEN = ["header", "#stop", "#map-finger", "#numbers", "#scope .u-wrap", "#scope .u-legend"];
 
+/** In the page: the boxes of the words over the map: of the first visit, what is left of them, and of a slow replay. */
+function boxesOver() {
+  const [first, lens] = ["first-words", "lens-words"].map((id) => document.getElementById(id));
+  const boxes = [first.getBoundingClientRect()];
+  first.classList.add("taken");
+  boxes.push(first.getBoundingClientRect());
+  first.classList.remove("taken");
+  lens.hidden = false;
+  boxes.push(lens.getBoundingClientRect());
+  lens.hidden = true;
+  return boxes.map((box) => box.toJSON());
+}
+
 for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
   test(`map, numbers, scope and legend are seen at eight sizes, ${scene}, ${colorScheme}`, async () => {
     const page = await openStudio(undefined, { isFirstVisit: true });
@@ -38,6 +51,8 @@ for (const [scene, colorScheme] of Object.entries(SCHEMES)) {
       assert.deepEqual(await page.evaluate(cut), [], `${size}: cut`);
       const { height: plot } = await page.evaluate(boxOf, "#scope .u-over");
       assert.ok(plot >= PLOT_MIN_PX, `${size}: the curves have ${plot} px`);
+      const words = await page.evaluate(boxesOver);
+      for (const box of words) assert.ok(isWithin(box, map) && box.width > 0, `${size}: over the ruler, ${JSON.stringify(box)}`);
     }
   });
 }

@@ -14,8 +14,8 @@ const RADIUS_MAX_PX = 120;
 const RADIUS_MIN_PX = 64;
 /** Part of the map's height that the lens takes at most. */
 const HEIGHT_PART = 0.34;
-/** Height of the words below it, CSS pixels: the lens stays above them where there is room. */
-const WORDS_PX = 44;
+/** Distance of the words below it from it and from the screen's edge together, CSS pixels. */
+const WORDS_GAP_PX = 12;
 /** Reports that stay, and how much of the voltage is shown, samples of a millisecond. */
 const REPORTS = 8;
 const ENVELOPE = 120;
@@ -121,7 +121,8 @@ export class Lens {
     const { at } = this.#now;
     const inside = (/** @type {number} */ value, /** @type {number} */ most) =>
       Math.max(radius + 4, Math.min(value, most - radius - 4));
-    const most = Math.max(height - WORDS_PX, 2 * radius + 8);
+    // The lens stays above the words where there is room.
+    const most = Math.max(height - this.#words.offsetHeight - WORDS_GAP_PX, 2 * radius + 8);
     const centre = [inside(at.xMm * scale, width), inside(at.yMm * scale, most)];
     context.save();
     context.translate(centre[0], centre[1]);

@@ -175,6 +175,7 @@ export class FrictionMap {
       height: heightMm * this.scale,
     };
     // For what floats over the screen.
+    this.box.style.setProperty("--screen-left", `${area.left}px`);
     this.box.style.setProperty("--screen-right", `${Math.max(0, clientWidth - area.left - area.width)}px`);
     this.box.style.setProperty("--screen-bottom", `${Math.max(0, clientHeight - area.top - area.height)}px`);
     this.onLayout(area);
