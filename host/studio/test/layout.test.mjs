@@ -84,6 +84,9 @@ test("text and tools are closed at the first visit, and later as they were left"
 
 test("values in the legend are whole, and neither they nor a tab change the size of anything", async () => {
   const page = await openStudio();
+  const marks = page.locator("#scope .u-marker");
+  const drawn = await marks.evaluateAll((all) => all.map((mark) => getComputedStyle(mark).borderTopStyle));
+  assert.deepEqual(drawn.slice(1), ["dashed", "solid", "solid"], "as the curves of reference, felt and voltage");
   const parts = ["#scope .u-wrap", "#scope .u-legend", "#numbers", "#map-finger", "#editor", ".side", "#drawer"];
   for (const size of WINDOWS.filter(([width]) => width > PHONE_MAX_PX)) {
     await resize(page, size);

@@ -119,6 +119,7 @@ export class Scope {
         { label: "voltage", scale: "V", stroke: colour("voltage", this.#box), width: 1.5, value: digits("V rms", volts) },
       ],
       cursor: { drag: { x: true, y: false } },
+      legend: { markers: { dash: (plot, at) => (plot.series[at].dash ? "dashed" : "solid") } },
       hooks: { setSelect: [({ select }) => select.width > 0 && this.pause(true)] },
     };
     const plot = new uPlot(options, [[], [], [], []], this.#box);
