@@ -44,7 +44,7 @@ test("New offers scenes, each with a picture and one sentence, and each plays an
     const text = await page.evaluate(() => studioPage.editor.text);
     assert.deepEqual(await problems(page, text), { isDraft: false, layers: 1, said: [] }, name);
     assert.ok(await page.isHidden("#new-scene"));
-    await page.locator(".layer-box[aria-current=true]").waitFor();
+    await page.locator(".layer-box[aria-current=true]:focus").waitFor();
     await page.getByRole("button", { name: "Feel", exact: true }).click();
   }
 });

@@ -150,6 +150,8 @@ export class Hands {
     const { key, beginsEdit } = this.#selection.follow(before, this.isEditing);
     if (beginsEdit && !this.isEditing) this.setEditing(true);
     this.#reselect(key);
+    // As after Add, unless a person types elsewhere meanwhile.
+    if (beginsEdit && document.activeElement?.matches("body, button")) this.focus(key);
     // What was said was about the layers before.
     this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");
     // What is selected stands in the text that is shown.
