@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PLATES, holdSlider, onPage, openEditing, press, selected, textOf } from "./editing.mjs";
+import { boxes, isWithin } from "./layout.mjs";
 import { WHOLE_SCREEN_GRATING, plays, resize, writeScene } from "./page.mjs";
 
 test("a slider of a number that was not written keeps its row and its ends while it is dragged, and then", async () => {
@@ -279,6 +280,26 @@ test("a mistake that a hand makes is said in the panel until it is mended, and m
   await number.fill(before);
   await press(page, "Enter");
   await plays(page);
+});
+
+test("the verdict of a layer that is added, and why a board refuses a draft, are read without scrolling", async () => {
+  const page = await openEditing();
+  await page.getByRole("button", { name: "Add edge", exact: true }).click();
+  await page.locator(".layer-felt .verdict").waitFor();
+  const assertRead = async (...parts) => {
+    const { ".layer-panel": panel, ...found } = await boxes(page, [".layer-panel", ".layer-felt .verdict", ...parts]);
+    for (const box of Object.values(found)) assert.ok(isWithin(box, panel), JSON.stringify([box, panel]));
+  };
+  await assertRead();
+  await writeScene(page, PLATES.replace("friction_fraction = 0.5", "friction_n = 0.5"));
+  const note = page.locator(".layer-panel .note");
+  for (const xMm of [20, 90]) {
+    await page.mouse.click(...(await onPage(page, xMm, 30)));
+    await note.filter({ hasText: /^A board refuses this draft: layer 1 "left" / }).waitFor();
+    await assertRead(".layer-panel .note");
+  }
+  await writeScene(page, PLATES);
+  assert.equal(await note.textContent(), "");
 });
 
 const NOTIFIED = `version = 1

@@ -21,6 +21,7 @@ import { Selection } from "./selection.js";
 /** @import { Player } from "./player.js" */
 /** @import { Project } from "./project.js" */
 /** @typedef {{ map: FrictionMap, editor: Editor, player: Player, project: Project }} Parts */
+/** @typedef {Checked & { problems: Problem[] }} Outcome Of the check of a scene that plays. */
 
 export class Hands {
   #parts;
@@ -34,7 +35,7 @@ export class Hands {
   grip;
   /**
    * A check that came while a hand held a layer, which may let go without a change.
-   * @type {[Checked, Files] | undefined}
+   * @type {[Outcome, Files] | undefined}
    */
   #heldBack;
   /** A pointer has pressed the map and is not lifted. */
@@ -113,16 +114,18 @@ export class Hands {
 
   /**
    * Takes the layers of a scene that was checked.
-   * @param {Checked} check
+   * @param {Outcome} check
    * @param {Files} files That were checked.
    */
   show(check, files) {
     this.#removal.follow();
+    const mistake = mistakeIn(check.problems);
+    this.#view.panel.refusal = mistake && `A board refuses this draft: ${mistake}`;
     this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
     if (this.#heldBack) {
       this.#layers.feel(check.layers);
       // A mistake that the hand made is over.
-      if (this.grip.hasChanged) this.say("");
+      if (this.grip.hasChanged) this.#view.panel.sayFirst(this.selected);
       this.#draw(false);
       return;
     }
@@ -134,8 +137,9 @@ export class Hands {
    * @param {Problem[]} problems
    */
   showMistakes(problems) {
-    const first = problems.find(({ severity }) => severity === "error");
-    if (this.isEditing && first) this.say(first.message);
+    const { panel } = this.#view;
+    panel.refusal = mistakeIn(problems);
+    if (this.isEditing && panel.refusal) this.say(panel.refusal);
   }
 
   /**
@@ -153,7 +157,7 @@ export class Hands {
     // As after Add, unless a person types elsewhere meanwhile.
     if (beginsEdit && document.activeElement?.matches("body, button")) this.focus(key);
     // What was said was about the layers before.
-    this.say(this.selected?.at === undefined ? (this.selected?.place.whyNotMoved ?? "") : "");
+    this.#view.panel.sayFirst(this.selected);
     // What is selected stands in the text that is shown.
     if (!editor.has(this.selected?.layer.file)) this.#view.panel.hide();
   }
@@ -338,4 +342,12 @@ export class Hands {
     if (this.isEditing) this.#view.draw(this.#layers, this.selected, isNew);
     else this.#view.panel.hide();
   }
+}
+
+/**
+ * The first mistake that a check found, in a sentence; empty if there is none.
+ * @param {Problem[]} problems
+ */
+function mistakeIn(problems) {
+  return problems.find(({ severity }) => severity === "error")?.message ?? "";
 }

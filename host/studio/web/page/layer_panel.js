@@ -44,6 +44,8 @@ export class LayerPanel {
   #choices = /** @type {Map<string, ChoiceRow>} */ (new Map());
   /** Where the layer is. @type {Place | undefined} */
   #place;
+  /** Why a board refuses the scene, or why the scene does not play; empty where it does. */
+  refusal = "";
   /** For what the verdict was made. */
   #feltFor = "";
   /** For what the panel was made. */
@@ -90,6 +92,14 @@ export class LayerPanel {
     if (this.#note.textContent !== sentence) this.#note.textContent = sentence;
   }
 
+  /**
+   * Says what there is to say of a layer before a hand changes it.
+   * @param {EditedLayer} [edited]
+   */
+  sayFirst(edited) {
+    this.note = (edited?.at === undefined && edited?.place.whyNotMoved) || this.refusal;
+  }
+
   focus() {
     /** @type {HTMLElement | null} */
     const first = this.element.querySelector("input[type=number]") ?? this.element.querySelector("button");
@@ -109,7 +119,7 @@ export class LayerPanel {
     const fields = [...numbers, ...choices].map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
     const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields, reach.naturalN, reach.reachN]);
-    if (isNew) this.note = at === undefined ? place.whyNotMoved : "";
+    if (isNew) this.sayFirst(edited);
     const isOther = madeFor !== this.#madeFor;
     if (isOther) this.#make(edited, numbers, choices);
     this.#madeFor = madeFor;
@@ -166,7 +176,7 @@ export class LayerPanel {
    */
   showNone(count, isNew) {
     const madeFor = `none of ${Math.min(count, 1)}`;
-    if (isNew) this.note = "";
+    if (isNew) this.sayFirst();
     if (madeFor !== this.#madeFor) {
       this.element.setAttribute("aria-label", "Layers to add");
       const hint = element("p", { className: "soft" }, count > 0 ? HINT : EMPTY_HINT);
