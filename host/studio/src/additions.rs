@@ -81,10 +81,11 @@ fn number(value: f64) -> f64 {
     (1000.0 * value).round() / 1000.0
 }
 
-/// The lines of a ridge with a click across the middle of a box; `repeat` is the line of its copies.
+/// The lines of a ridge with a click across the middle of a box; `repeat` is the line of its copies. It is not added to
+/// what lies below: both together could be out of reach.
 fn ridge(layout: &Layout, repeat: &str, width_mm: f64) -> String {
     format!(
-        "kind = \"edge\"\n{}{repeat}{}width_mm = {width_mm}\nridge_fraction = 0.25\n\
+        "kind = \"edge\"\nblend = \"max\"\n{}{repeat}{}width_mm = {width_mm}\nridge_fraction = 0.25\n\
          click_fraction = 0.75\nclick_ms = 15\n",
         layout.region(),
         layout.middle()

@@ -14,7 +14,9 @@ const SCREENS_MM: [[f64; 2]; 3] = [[30.0, 20.0], [300.0, 60.0], SCREEN_MM];
 
 fn program(text: &str) -> Program {
     let wood = include_bytes!("../../../../scenes/textures/wood.jpg");
-    let files = BTreeMap::from([(PICTURE.0.to_owned(), wood.to_vec())]);
+    let brick = include_bytes!("../../../../scenes/textures/brick.png");
+    let files = [(PICTURE.0, wood.to_vec()), ("textures/brick.png", brick.to_vec())];
+    let files: BTreeMap<_, _> = files.map(|(name, bytes)| (name.to_owned(), bytes)).into();
     let scene = Scene::parse(text, "scene.toml", &files).unwrap();
     let board = Board::SIMULATOR;
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -54,6 +56,19 @@ fn whatever_can_be_added_is_felt_and_weaker_too() {
         }
     }
     assert!(weak.is_empty(), "{}", weak.join("\n\n"));
+}
+
+/// The scene that the page opens with is a picture over most of the screen, with no room beside it.
+#[test]
+fn a_board_takes_what_is_added_to_the_first_scene() {
+    let brick = include_str!("../../../../scenes/brick.toml");
+    for listed in list().unwrap().as_array().unwrap() {
+        let name = listed["name"].as_str().unwrap();
+        // Another picture does not fit into the board's memory.
+        if listed["isPicture"] != true {
+            program(&added(brick, name, SCREEN_MM, &[[10.0, 0.0, 100.0, 80.0]]).0);
+        }
+    }
 }
 
 /// No two overlap, as long as there is room.
