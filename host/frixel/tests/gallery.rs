@@ -68,7 +68,7 @@ impl Entry {
         format!("{} {}", self.headline(), paragraph(last.into_iter()))
     }
 
-    /// What the judge says of the layers under a bundled finger.
+    /// Verdicts on the layers under a bundled finger.
     fn judged(&self, finger: &str) -> Vec<LayerVerdict> {
         let rig = RigConfig::default();
         let scene = self.scene.clone().with_finger(FingerProfile::bundled(finger).unwrap(), finger);

@@ -64,8 +64,7 @@ mod _frixel {
         module.add("SEEDS", TrialPlan::SEEDS)?;
         module.add("STROKE_S", TrialPlan::SECONDS)?;
         module.add("COUNT_MAX", TrialPlan::COUNT_MAX)?;
-        let (least, most) = TrialPlan::MEDIAN_SPEEDS_MM_PER_S.into_inner();
-        module.add("MEDIAN_SPEEDS_MM_PER_S", (least, most))?;
+        module.add("MEDIAN_SPEEDS_MM_PER_S", TrialPlan::MEDIAN_SPEEDS_MM_PER_S.into_inner())?;
         module.add("STROKE_MAX_S", STROKE_MAX_S)?;
         module.add("TRIGGER_MAX_S", DURATION_MAX_S)?;
         module.add("GAIN_MAX", GAIN_MAX)?;

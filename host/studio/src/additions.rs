@@ -271,8 +271,8 @@ pub(crate) fn list() -> Result<Value, TextError> {
     ADDITIONS.iter().map(each).collect()
 }
 
-/// For the page's completion: the values that a new layer of each kind has, as TOML by its fields, by the kind. They
-/// are those of [`WRITTEN`], and else of the first layer of that kind that can be added.
+/// Initial values of a layer's fields, as TOML, by kind and field, for the page's completion. Fields that [`WRITTEN`]
+/// lacks have the values of the first layer of that kind in [`ADDITIONS`].
 pub(crate) fn first_values() -> Value {
     let listed = ADDITIONS.iter().map(|addition| addition.laid(SCREEN_MM, None).0);
     let mut kinds: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();

@@ -96,8 +96,8 @@ pub extern "C" fn layouts() -> i32 {
     respond(|| Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS })))
 }
 
-/// What the page knows of perception: `weberStepsPerE`, the Weber steps of a friction that is e times as large, and
-/// `weberStep`, a sentence on what such a step is.
+/// Constants of perception for the page: `weberStepsPerE`, Weber steps of a change by a factor of e, and `weberStep`, a
+/// sentence that explains a Weber step.
 #[unsafe(no_mangle)]
 pub extern "C" fn perception() -> i32 {
     respond(|| {
@@ -134,7 +134,7 @@ pub extern "C" fn additions() -> i32 {
     respond(|| Ok(additions::list()?))
 }
 
-/// What layers of each kind begin with: `additions.rs` says how.
+/// Initial values of fields by kind, from `additions.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn first_values() -> i32 {
     respond(|| Ok(additions::first_values()))

@@ -345,7 +345,7 @@ export class Hands {
 }
 
 /**
- * The first mistake that a check found, in a sentence; empty if there is none.
+ * Returns the first mistake among the problems of a check; empty without one.
  * @param {Problem[]} problems
  */
 function mistakeIn(problems) {

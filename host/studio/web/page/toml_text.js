@@ -119,12 +119,14 @@ export function additions() {
   return instance.call("additions", new Uint8Array());
 }
 
-/**
- * The values of a new layer of each kind, as TOML by its fields.
- * @returns {Record<string, Record<string, string>>}
- */
+/** @type {Record<string, Record<string, string>> | undefined} */
+let first;
+
+/** Initial values of a new layer, as TOML by kind and field. */
 export function firstValues() {
-  return instance.call("first_values", new Uint8Array());
+  // Completion asks for each kind that it offers.
+  first ??= /** @type {Record<string, Record<string, string>>} */ (instance.call("first_values", new Uint8Array()));
+  return first;
 }
 
 /**
