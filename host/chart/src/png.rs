@@ -12,10 +12,15 @@ use plotters_backend::{
 use super::style::{Scale, load_font};
 use super::{Area, DrawError, Drawn};
 
-/// Number of units per pixel in both directions, averaged to smooth the edges of lines and letters.
-const SCALE: Scale = Scale(2);
+/// Units per pixel in both directions, averaged to smooth the edges of lines and letters.
+const UNITS: usize = 2;
+const SCALE: Scale = Scale(UNITS as u32);
 /// Number of grey levels: enough for the edges of letters, few enough for a palette.
 const GREYS: u32 = 17;
+/// Number of levels of each channel along the edges of colours, of which a square of four units covers some.
+const EDGE_LEVELS: u32 = 5;
+/// Smallest difference between colours, in a channel, that have an edge. Others are steps of the same colour scale.
+const EDGE_MIN: u8 = 64;
 /// Vertical offset by which plotters draws letters too high, as a fraction of their size: their box ends at 1/1.24 of
 /// it, with the baseline in the middle of the size.
 const TOO_HIGH: f64 = 0.2;
@@ -38,34 +43,36 @@ pub(super) fn encoded(
 
 /// Averages squares of units into pixels.
 fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
-    let side = SCALE.px(1) as usize;
-    let fine_row = 3 * width * side;
-    let count = (side * side) as u32;
-    let mut pixels = Vec::with_capacity(fine.len() / (3 * side * side));
-    for rows in fine.chunks_exact(fine_row * side) {
-        let mut sums = vec![[0_u32; 3]; width];
-        for row in rows.chunks_exact(fine_row) {
-            for (sums, units) in sums.iter_mut().zip(row.chunks_exact(3 * side)) {
-                for unit in units.chunks_exact(3) {
-                    for (sum, value) in sums.iter_mut().zip(unit) {
-                        *sum += u32::from(*value);
-                    }
-                }
-            }
-        }
-        pixels.extend(sums.iter().map(|sums| few_greys(sums.map(|sum| ((sum + count / 2) / count) as u8))));
+    let mut pixels = Vec::with_capacity(fine.len() / (3 * UNITS * UNITS));
+    let units = fine.as_chunks::<3>().0;
+    for rows in units.chunks_exact(width * UNITS * UNITS) {
+        let (upper, lower) = rows.split_at(width * UNITS);
+        let squares = upper.as_chunks::<UNITS>().0.iter().zip(lower.as_chunks::<UNITS>().0);
+        pixels.extend(squares.map(|([a, b], [c, d])| average([*a, *b, *c, *d])));
     }
     pixels
 }
 
-/// Rounds a grey to one of the [`GREYS`] levels.
-fn few_greys(pixel: [u8; 3]) -> [u8; 3] {
-    let [red, green, blue] = pixel;
-    if red != green || green != blue {
-        return pixel;
-    }
-    let step = 255 / (GREYS - 1);
-    [((u32::from(red) + step / 2) / step * step).min(255) as u8; 3]
+/// The average of units. Greys and the averages along edges are rounded to few levels.
+fn average(units: [[u8; 3]; UNITS * UNITS]) -> [u8; 3] {
+    let [first, ..] = units;
+    let channel = |channel: usize| units.map(|unit| unit[channel]);
+    let channels = [channel(0), channel(1), channel(2)];
+    let average = channels.map(|values| (values.into_iter().map(u32::from).sum::<u32>() + 2) / 4);
+    let has_edge = channels.iter().any(|values| {
+        let (low, high) = values.iter().fold((u8::MAX, 0), |(low, high), value| (low.min(*value), high.max(*value)));
+        high - low >= EDGE_MIN
+    });
+    let levels = match average {
+        [red, green, blue] if red == green && green == blue => GREYS,
+        _ if has_edge => EDGE_LEVELS,
+        _ => return first,
+    };
+    average.map(|value| {
+        let steps = levels - 1;
+        let level = (value * steps + 127) / 255;
+        ((level * 255 + steps / 2) / steps) as u8
+    })
 }
 
 /// Encodes a PNG file, with a palette and one byte per pixel if there are few colours.
@@ -73,7 +80,7 @@ fn encode(pixels: &[[u8; 3]], (width, height): (u32, u32)) -> Result<Vec<u8>, pn
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(png::Compression::Balanced);
     let bytes = if let Some((palette, indices)) = indexed(pixels) {
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_palette(palette.concat());

@@ -30,7 +30,7 @@ const MARK: f64 = 4.2;
 /// Lengths of a dash and of the gap after it, in pixels.
 const DASH: (u32, u32) = (7, 5);
 /// Number of colours in the colour scale; more would be indistinguishable and would make picture files large.
-const COLOUR_STEPS: f64 = 32.0;
+const COLOUR_STEPS: f64 = 30.0;
 
 /// Colours that can be told apart with any kind of colour vision (Okabe and Ito, <https://jfly.uni-koeln.de/color/>).
 pub const PALETTE: [RGBColor; 7] = [

@@ -25,9 +25,9 @@ impl Turning {
         };
         let Some([from_x_m, from_y_m]) = self.place_m.replace([x_m, y_m]) else { return true };
         let step = [x_m - from_x_m, y_m - from_y_m];
-        let step_m = libm::hypot(step[0], step[1]);
+        let step_m = length(step);
         if step_m <= 0.0 {
-            return libm::hypot(self.pull[0], self.pull[1]) < TURNED;
+            return length(self.pull) < TURNED;
         }
         // Same as `direction_of` in `frixel_scene::reference`, with a known length.
         self.direction = step.map(|part_m| part_m / step_m);
@@ -43,6 +43,11 @@ impl Turning {
     pub(super) fn direction(&self) -> [f64; 2] {
         self.direction
     }
+}
+
+/// Length of a vector. Steps of a finger are far above the lengths whose squares vanish.
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 #[cfg(test)]
