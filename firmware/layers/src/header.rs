@@ -21,8 +21,10 @@ pub const HALF_PERIOD_MIN_TICKS: u32 = 4;
 /// Lowest carrier frequency, Hz. Charge leaks through skin below about 250 Hz (arXiv 2409.18725); below half of that,
 /// the drive effectively has no alternating carrier.
 pub const CARRIER_MIN_HZ: f32 = 125.0;
-/// Shortest and longest host timeout, s.
-pub const HOST_TIMEOUTS_S: [f32; 2] = [0.02, 1.0];
+/// Shortest and longest host timeout, ms.
+pub const HOST_TIMEOUTS_MS: [u16; 2] = [20, 1_000];
+/// [`HOST_TIMEOUTS_MS`] in s.
+pub const HOST_TIMEOUTS_S: [f32; 2] = [HOST_TIMEOUTS_MS[0] as f32 / 1e3, HOST_TIMEOUTS_MS[1] as f32 / 1e3];
 
 /// Offsets of the header's fields; those of `f32` are in [`Header::numbers`].
 mod field {

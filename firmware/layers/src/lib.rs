@@ -98,7 +98,9 @@ pub use finger_law::{FingerLaw, LAW_POINTS_MAX};
 pub use frixel_model::LawPoint;
 pub use frixel_model::Waveform;
 pub use grid::{Cell, Grid, LayerSet, layer_numbers, layer_set};
-pub use header::{CARRIER_MIN_HZ, HALF_PERIOD_MIN_TICKS, HEADER_LEN, HOST_TIMEOUTS_S, Header, Leader, SCENE_VERSION};
+pub use header::{
+    CARRIER_MIN_HZ, HALF_PERIOD_MIN_TICKS, HEADER_LEN, HOST_TIMEOUTS_MS, HOST_TIMEOUTS_S, Header, Leader, SCENE_VERSION,
+};
 pub use interval::{Interval, Number};
 #[cfg(feature = "vibration")]
 pub use kinds::vibration::{Beat, Burst};

@@ -156,6 +156,12 @@ impl<L: Link> Device<L> {
         Ok(())
     }
 
+    /// Whether a program may arm the board: a simulated one always, and a board with an electrode with the consent of a
+    /// person.
+    pub fn may_arm(&self, has_consent: bool) -> bool {
+        has_consent || self.hello.board.is_simulated()
+    }
+
     /// Changes the state from disarmed to armed: ready to play, output zero.
     pub fn arm(&mut self) -> Result<(), DeviceError> {
         self.before_arming()?;

@@ -46,6 +46,14 @@ pub fn writing(path: &Path) -> impl FnOnce(io::Error) -> Error {
     |error| Error::Unwritable(path.to_owned(), error, "check the folder and its free space")
 }
 
+/// Creates a folder, and the folders around it, unless it exists.
+pub fn create_folder(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).map_err(|error| {
+        let advice = if path.is_file() { "it is a file: name a folder" } else { "check the folder and its free space" };
+        Error::Unwritable(path.to_owned(), error, advice)
+    })
+}
+
 /// Whether a file is a recording of a person, by its content: see [`frixel_lab::recording::is_of_person`].
 pub fn is_of_person(path: &Path) -> bool {
     let file = open(path, u64::MAX).map(Bounded::into_inner);
@@ -77,7 +85,7 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Creates the folder if necessary, and locks it.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        fs::create_dir_all(path).map_err(writing(path))?;
+        create_folder(path)?;
         Ok(Self { _lock: open_locked(path, &path.join(LOCK))? })
     }
 }

@@ -36,7 +36,7 @@ pub(crate) struct FitSettings {
 pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> PyResult<(String, String, String)> {
     let screen: Screen = settings.screen.read(py)?;
     let FitSettings { empirical, voltage_v_rms, normal_load_n, without, seed, date, method, screen: named } = settings;
-    let coating_gap_m = 1e-6 * screen.coating_gap_um();
+    let coating_gap_m = screen.coating_gap_m();
     let settings = Settings { voltage_v_rms, normal_load_n, coating_gap_m, without, seed };
     let screen = screen.name.unwrap_or_else(|| named.name().to_owned());
     let experiment = Experiment { date, method, screen: screen.clone() };

@@ -76,10 +76,7 @@ pub(crate) fn score_scene(
         let trials = plan.of_people(settings.people, scene.parsed(), &program, goes_on)?;
         Ok(pool.install(|| Score::of(&program, &world, &trials, goes_on)))
     })?;
-    let scored = scored.map_err(|error| match error {
-        TrialsError::Screen(error) => scene_error(py, &error),
-        error => parameter_error(py, error),
-    })?;
+    let scored = scored.map_err(|error: TrialsError| parameter_error(py, error))?;
     let score = scored.map_err(|error| failed(error.to_string()))?;
     Ok((score.to_json(), score.summary(false), score.to_csv(), score.layers_csv()))
 }

@@ -153,7 +153,7 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"people": 0}, "people is 0: give a number from 1 to 100000"),
+        ({"people": 0}, "people is 0: give a number from 1 to 1000000"),
         ({"peple": 3}, "<plan>: the plan has no field `peple`: did you mean `people`"),
         ({"scenes": ["nowhere.toml"]}, "the scene nowhere.toml cannot be read"),
         ({"scenes": {}}, "give the name of one scene file or more"),

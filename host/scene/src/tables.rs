@@ -2,7 +2,7 @@
 //! [`super::json_schema`] and `docs/design/scene-reference.md` show them.
 #![allow(clippy::wildcard_imports, reason = "every table is written with the same few words")]
 
-use frixel_layers::range;
+use frixel_layers::{CARRIER_MIN_HZ, HOST_TIMEOUTS_MS, range};
 
 use super::grammar::Absence::{Flag, Means, Mistake, Number};
 use super::grammar::{Absence, AmountFields, FieldSpec, Holds, LengthFields, Range};
@@ -293,7 +293,7 @@ pub(super) mod drive {
         number("slew_v_per_us", SLEW, Number(5.0), "fastest change of the envelope");
     pub(crate) const HOST_TIMEOUT_MS: FieldSpec = number(
         "host_timeout_ms",
-        Range::new(20.0, 1_000.0, " ms"),
+        Range::new(HOST_TIMEOUTS_MS[0] as f64, HOST_TIMEOUTS_MS[1] as f64, " ms"),
         Number(250.0),
         "silence of the host after which the output goes to zero",
     );
@@ -310,7 +310,7 @@ pub(super) mod carrier {
     /// Below this frequency the drive is not an alternating carrier. The upper limit depends on the board's ticks.
     pub(crate) const FREQUENCY_HZ: FieldSpec = number(
         "frequency_hz",
-        Range::new(125.0, 100_000.0, " Hz, and at most an eighth of the board's ticks a second"),
+        Range::new(CARRIER_MIN_HZ as f64, 100_000.0, " Hz, and at most an eighth of the board's ticks a second"),
         Number(1_000.0),
         "rounded to whole ticks per half period; the rounding is reported",
     );

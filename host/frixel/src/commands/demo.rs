@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 
-use super::error::writing;
-use frixel_files::{Inputs, OutputFile};
+use frixel_files::{Inputs, OutputFile, create_folder};
 
 use super::play::{self, PlayArgs};
 use super::terminal::print_line;
@@ -56,7 +55,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<()> {
 /// Writes a file unless there is one already, and returns whether it did.
 fn create(path: &Path, bytes: &[u8]) -> Result<bool> {
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(writing(folder))?;
+        create_folder(folder)?;
     }
     Ok(OutputFile::new(path, "--out", &Inputs::default())?.write_new(bytes)?)
 }

@@ -4,25 +4,23 @@ use std::num::NonZero;
 
 use anyhow::{Result, anyhow};
 use clap::Args;
+use frixel_lab::score::TrialPlan;
 use rayon::ThreadPoolBuilder;
 
 use super::argument::whole;
-
-/// Most threads that a command takes.
-const JOBS_MAX: u16 = 1024;
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct JobsArgs {
     /// Simulate so many plays side by side. Without it, as many as this machine has processors. Results are the same
     /// for any number.
-    #[arg(long, value_name = "N", value_parser = whole(1..=JOBS_MAX))]
-    jobs: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
+    jobs: Option<u64>,
 }
 
 impl JobsArgs {
     /// Does work that simulates on the threads of its rayon pool.
     pub(super) fn run<R: Send>(self, work: impl FnOnce() -> R + Send) -> Result<R> {
-        let jobs = self.jobs.map(usize::from);
+        let jobs = self.jobs.map(|jobs| jobs as usize);
         let threads = jobs.or_else(|| std::thread::available_parallelism().ok().map(NonZero::get)).unwrap_or(1);
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool =

@@ -27,7 +27,7 @@ pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<
     for sentence in device.hello().notice_sentences() {
         note(format_args!("note: {sentence}"));
     }
-    if arm || device.hello().board.is_simulated() {
+    if device.may_arm(arm) {
         return Ok(device);
     }
     bail!(

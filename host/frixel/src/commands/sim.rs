@@ -60,7 +60,7 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
 /// The finger that stays whatever scene plays, if there is one.
 fn own_finger(args: &SimArgs) -> Result<Option<OwnFinger>> {
     if let Some(seed) = args.finger_seed {
-        let coating_gap_m = 1e-6 * screen(args.screen.as_deref())?.1.coating_gap_um();
+        let coating_gap_m = screen(args.screen.as_deref())?.1.coating_gap_m();
         return Person::drawn(seed).own_finger(coating_gap_m).map(Some).map_err(of_finger);
     }
     let Some(finger) = &args.finger else { return Ok(None) };

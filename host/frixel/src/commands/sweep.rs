@@ -1,7 +1,6 @@
 //! `frixel sweep`: studies of many simulated fingers.
 
 use std::fmt::Display;
-use std::fs::create_dir_all;
 use std::io::{self, IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -16,12 +15,12 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::argument::shard;
-use super::error::{at, writing};
+use super::error::at;
 use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
 use crate::scene_file::gathered;
-use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all};
+use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all, create_folder};
 
 /// Time between two tries to write a file that another process writes, and the longest time for all of them.
 const WAIT: Duration = Duration::from_millis(10);
@@ -81,7 +80,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let keys = Keys { cells: cells.iter().map(Cell::key).collect() };
     let keys_file = out.join(KEYS_FILE);
     let folder = keys_file.parent().unwrap_or(out);
-    create_dir_all(folder).map_err(writing(folder))?;
+    create_folder(folder)?;
     write_shared(&OutputFile::new(&keys_file, "-o", &inputs)?, &json(&keys))?;
 
     let (part, parts) = args.shard.unwrap_or((1, 1));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use frixel_hil_sim::{Person, Stroke, StrokeError};
 use frixel_model::ParameterError;
 use frixel_play::GoesOn;
-use frixel_scene::{CompileError, Program, Scene};
+use frixel_scene::{Program, Scene};
 use thiserror::Error;
 
 use super::{Trial, TrialFinger};
@@ -42,9 +42,9 @@ pub enum TrialsError {
     /// The contact model refuses a person on this screen.
     #[error("the contact model rejects the finger of a person: {0}")]
     Finger(#[from] ParameterError),
-    /// The scene's screen is not known without its own finger.
-    #[error(transparent)]
-    Screen(#[from] CompileError),
+    /// A file or a sweep has its own speed.
+    #[error("a median speed is that of human strokes: leave it out, or choose the stroke `human` or `human-rough`")]
+    SpeedOfPeople,
     /// They would not end.
     #[error(
         "people x strokes x seeds are {plays} plays, and at most {PLAYS_MAX} are scored: give fewer, or share the work \
@@ -87,7 +87,7 @@ impl TrialPlan {
     pub const SEEDS: u64 = 2;
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
-    /// Largest number of people, of strokes, and of repetitions that one score takes as options.
+    /// Largest number of people, strokes, repetitions and threads of a score.
     pub const COUNT_MAX: u64 = 1000;
     /// Median speeds of strokes of people, mm/s.
     pub const MEDIAN_SPEEDS_MM_PER_S: RangeInclusive<f64> = 1.0..=1000.0;
@@ -103,19 +103,22 @@ impl TrialPlan {
         program: &Program,
         goes_on: GoesOn<'_>,
     ) -> Result<Vec<Trial>, TrialsError> {
-        self.check_size(people.unwrap_or(1))?;
+        self.check(people.unwrap_or(1))?;
         let Some(people) = people else { return Ok(self.trials(program, None, goes_on)?) };
-        let coating_gap_um = scene.screen().coating_gap_um();
+        let coating_gap_m = scene.screen().coating_gap_m();
         let of_person = |person| {
-            let finger = TrialFinger::of_person(person, coating_gap_um)?;
+            let finger = TrialFinger::of_person(person, coating_gap_m)?;
             Ok(self.trials(program, Some(finger), goes_on)?)
         };
         let trials = (1..=people).take_while(|_| goes_on().is_continue()).map(of_person);
         Ok(trials.collect::<Result<Vec<_>, TrialsError>>()?.into_iter().flatten().collect())
     }
 
-    fn check_size(&self, people: u64) -> Result<(), TrialsError> {
+    fn check(&self, people: u64) -> Result<(), TrialsError> {
         let is_of_people = matches!(self.stroke, TrialStroke::Generated(stroke) if stroke.is_of_people());
+        if !is_of_people && self.median_speed_m_per_s.is_some() {
+            return Err(TrialsError::SpeedOfPeople);
+        }
         let strokes = people.saturating_mul(if is_of_people { self.strokes } else { 1 });
         let (plays, seconds) = (strokes.saturating_mul(self.seeds), strokes as f64 * self.seconds);
         if plays > PLAYS_MAX {
@@ -171,8 +174,8 @@ impl TrialPlan {
 }
 
 impl TrialFinger {
-    /// The finger of a person, from 1, on a screen whose coating has an effective gap of so many micrometres.
-    pub fn of_person(person: u64, coating_gap_um: f64) -> Result<Self, ParameterError> {
-        Ok(Self { person, finger: Person::drawn(person).own_finger(1e-6 * coating_gap_um)? })
+    /// The finger of a person, from 1, on a screen whose coating has this effective gap.
+    pub fn of_person(person: u64, coating_gap_m: f64) -> Result<Self, ParameterError> {
+        Ok(Self { person, finger: Person::drawn(person).own_finger(coating_gap_m)? })
     }
 }

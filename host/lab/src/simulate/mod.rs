@@ -90,7 +90,7 @@ impl PlayOptions {
         part_off_screen(&stroke, screen_m(program), seconds)?;
         let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
-        let own_finger = |seed| Person::drawn(seed).own_finger(1e-6 * scene.screen().coating_gap_um());
+        let own_finger = |seed| Person::drawn(seed).own_finger(scene.screen().coating_gap_m());
         let world = WorldOptions {
             ideal: self.ideal,
             no_leakage: self.no_leakage,

@@ -146,10 +146,10 @@ impl Cell {
             return Err(CellError::OtherVersion { found: self.version.clone() });
         }
         let (scene, world, program) = self.compiled()?;
-        let coating_gap_um = scene.screen().coating_gap_um();
+        let coating_gap_m = scene.screen().coating_gap_m();
         let person = self.person;
         let finger =
-            TrialFinger::of_person(person, coating_gap_um).map_err(|source| CellError::Finger { person, source })?;
+            TrialFinger::of_person(person, coating_gap_m).map_err(|source| CellError::Finger { person, source })?;
         let trials = TrialPlan {
             stroke: self.stroke.into(),
             strokes: self.strokes,

@@ -191,9 +191,12 @@ impl Plan {
         if self.touch.is_empty() {
             return refuse("touch", "empty".to_owned(), "100, 200, 500, or the file of a touch source");
         }
-        for (field, count) in [("people", self.people), ("strokes", self.strokes), ("seeds", self.seeds)] {
-            if !(1..=100_000).contains(&count) {
-                return refuse(field, count.to_string(), "a number from 1 to 100000");
+        if !(1..=CELLS_MAX as u64).contains(&self.people) {
+            return refuse("people", self.people.to_string(), &format!("a number from 1 to {CELLS_MAX}"));
+        }
+        for (field, count) in [("strokes", self.strokes), ("seeds", self.seeds)] {
+            if !(1..=TrialPlan::COUNT_MAX).contains(&count) {
+                return refuse(field, count.to_string(), &format!("a number from 1 to {}", TrialPlan::COUNT_MAX));
             }
         }
         if !(0.25..=600.0).contains(&self.seconds) {

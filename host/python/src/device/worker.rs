@@ -170,7 +170,7 @@ fn real(
 ) -> Result<(), Trouble> {
     let serial = SerialLink::open(port, DEFAULT_BAUD).map_err(failed)?;
     let device = Device::connect(Observed::new(serial)).map_err(failed)?;
-    if !(arm || device.hello().board.is_simulated()) {
+    if !device.may_arm(arm) {
         return Err(Trouble::Play(format!(
             "{port} is a board with an electrode: give arm=True, and press and hold the board's arm switch before \
              `play`, to let it drive hundreds of volts"

@@ -72,6 +72,11 @@ impl Screen {
     pub fn coating_gap_um(&self) -> f64 {
         self.coating.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity)
     }
+
+    /// [`Self::coating_gap_um`] in metres.
+    pub fn coating_gap_m(&self) -> f64 {
+        1e-6 * self.coating_gap_um()
+    }
 }
 
 impl Profile for Screen {

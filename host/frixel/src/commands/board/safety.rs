@@ -54,7 +54,7 @@ pub(in crate::commands) struct SafetyArgs {
 }
 
 pub(super) fn run(args: &SafetyArgs) -> Result<()> {
-    let gap_m = 1e-6 * scene_file::profile::<Screen>(&args.screen)?.coating_gap_um();
+    let gap_m = scene_file::profile::<Screen>(&args.screen)?.coating_gap_m();
     let board = Board::named(&args.board).unwrap_or(Board::NUCLEO_G474RE);
     let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);
     let table = Table { board, series_ohm, capacitance_f: VACUUM_PERMITTIVITY_F_PER_M * CONTACT_M2 / gap_m };

@@ -124,7 +124,7 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
     let settings = Settings {
         voltage_v_rms: args.voltage.unwrap_or(STATED_V_RMS),
         normal_load_n: args.load,
-        coating_gap_m: 1e-6 * screen.coating_gap_um(),
+        coating_gap_m: screen.coating_gap_m(),
         without: args.without.clone(),
         seed: args.seed,
     };

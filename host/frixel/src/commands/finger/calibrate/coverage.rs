@@ -63,7 +63,7 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
     let settings = Settings {
         voltage_v_rms: 150.0,
         normal_load_n: None,
-        coating_gap_m: 1e-6 * Screen::example().coating_gap_um(),
+        coating_gap_m: Screen::example().coating_gap_m(),
         without: Vec::new(),
         seed: 1,
     };
@@ -83,7 +83,7 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     // The person's friction coefficient under this load, in the contact whose own load it is.
     let gain = (load_n / person.normal_load_n).powf(person.fingertip.load_exponent);
     let finger = Finger { friction_coefficient: gain * person.finger.friction_coefficient, ..person.finger };
-    let gap_m = person.skin_gap_m + 1e-6 * Screen::example().coating_gap_um();
+    let gap_m = person.skin_gap_m + Screen::example().coating_gap_m();
     let contact = Contact::new(&finger, gap_m).unwrap().under_load(load_n).unwrap();
 
     let fingertip = FingertipConfig { load_sd_n: 0.0, noise_rms_n: 0.0, ..person.fingertip };

@@ -44,7 +44,7 @@ pub(super) struct Simulated {
 
 impl Simulated {
     pub(super) fn new(args: &CalibrateArgs) -> Result<Self> {
-        let coating_gap_m = 1e-6 * screen(None)?.1.coating_gap_um();
+        let coating_gap_m = screen(None)?.1.coating_gap_m();
         let finger = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
         let config = RigConfig::default().with(&WorldOptions { finger: Some(finger), ..WorldOptions::default() });
         let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
