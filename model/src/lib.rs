@@ -124,6 +124,7 @@
 mod carrier;
 mod coating;
 mod contact;
+mod division;
 mod double_single;
 mod empirical;
 mod error;
@@ -140,6 +141,7 @@ mod touch_current;
 pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
 pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
+pub use division::divide_wide;
 pub use empirical::{EmpiricalLaw, LawError, LawPoint};
 pub use error::{Expected, InverseError, ParameterError, StateError};
 pub use finger::Finger;

@@ -7,8 +7,10 @@
 //! with its round of the ring, so that an old sample is not mistaken for the next one. The round has 16 bits: the check
 //! fails only for a slot that was skipped 65,535 times in a row.
 
+use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 use frixel_layers::StreamSample;
+use frixel_model::divide_wide;
 use frixel_wire::payload::SAMPLES_MAX;
 
 /// Capacity of a stream's buffer, in samples.
@@ -102,7 +104,7 @@ impl<'a> StreamIntake<'a> {
         let first = self.buffer.end.load(Ordering::Relaxed);
         self.first = Some(first);
         self.buffer.holes.store(0, Ordering::Relaxed);
-        let step = (u64::from(ONE) * u64::from(sample_hz) / u64::from(tick_hz)) as u32;
+        let step = NonZeroU32::new(tick_hz).map_or(0, |tick_hz| (divide_wide(sample_hz, 0, tick_hz).0 >> 1) as u32);
         StreamStart { first, step, start_level: u32::from(start_level) }
     }
 

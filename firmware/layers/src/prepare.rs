@@ -1,5 +1,8 @@
 //! Computes coefficients from parameters when a scene is committed.
 
+use core::num::NonZeroU32;
+
+use frixel_model::divide_wide;
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
 use crate::bitmap_pool::StoredBitmap;
@@ -28,14 +31,38 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
     allow(dead_code, reason = "only these change with time")
 )]
 pub(crate) fn steps_per_tick(frequency_hz: f32, tick_hz: u32) -> u32 {
+    let Some(divisor) = NonZeroU32::new(tick_hz) else { return 0 };
+    let whole_hz = frequency_hz.abs() as u32;
     // Units of 2^-32 Hz are finer than any accepted frequency.
-    let turns = (frequency_hz * (1u64 << 32) as f32) as i64;
-    let half = if turns < 0 { -i64::from(tick_hz / 2) } else { i64::from(tick_hz / 2) };
-    ((turns + half) / i64::from(tick_hz)) as u32
+    let fraction = ((frequency_hz.abs() - whole_hz as f32) * (1u64 << 32) as f32) as u32;
+    let (steps, remainder) = divide_wide(whole_hz, fraction, divisor);
+    let steps = steps as u32 + u32::from(remainder >= tick_hz - tick_hz / 2);
+    if frequency_hz < 0.0 { steps.wrapping_neg() } else { steps }
 }
 
 /// The refusal of a layer if the scene already has the largest number of layers of its kind.
 pub(crate) fn no_room(field: ConfigField, max: usize, layer: u8) -> Refusal {
     let max = max as f32;
     Refusal::Config(ConfigRefusal { field, found: max + 1.0, min: 0.0, max, layer })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::steps_per_tick;
+
+    proptest! {
+        #[test]
+        fn a_frequency_moves_the_nearest_number_of_steps(
+            frequency_hz in prop_oneof![-20_000.0..20_000.0_f32, -1.0..1.0_f32],
+            tick_hz in 8_000..100_000_u32,
+        ) {
+            let exact = f64::from(frequency_hz) * (1_u64 << 32) as f64 / f64::from(tick_hz);
+            let found = steps_per_tick(frequency_hz, tick_hz) as i32;
+            // A frequency above half the tick rate wraps.
+            prop_assume!(exact.abs() < f64::from(i32::MAX));
+            prop_assert!((f64::from(found) - exact).abs() <= 0.5 + 1e-6, "{found} {exact}");
+        }
+    }
 }

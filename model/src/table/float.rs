@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::bound::TOP_MARGIN;
 use super::interpolation::{Curve, Point, polynomial};
 use super::{TableBuilder, TableError};
-use crate::Real;
+use crate::{Real, divide_wide};
 
 /// Largest friction of a table, in newtons. Far above, the coefficients `V/x^n` of a row underflow, and the row exceeds
 /// the largest voltage.
@@ -36,13 +36,13 @@ impl RowGrid {
         voltage_max_v_rms: f32,
     ) -> Result<Self, TableError> {
         let end_bits = u64::from(friction_max_n.to_bits()) + 1;
-        let first_bits = end_bits.checked_sub(offset(rows as u64, density)).ok_or(TableError::Unrepresentable)?;
+        let first_bits = end_bits.checked_sub(offset(rows, density)).ok_or(TableError::Unrepresentable)?;
         Ok(Self { first_bits: first_bits as u32, density, friction_max_n, voltage_max_v_rms })
     }
 
     /// Start of a row; the end of the last row is the start of the row after it.
     pub(crate) fn start_n(&self, row: usize) -> f32 {
-        f32::from_bits((u64::from(self.first_bits) + offset(row as u64, self.density)) as u32)
+        f32::from_bits((u64::from(self.first_bits) + offset(row, self.density)) as u32)
     }
 
     /// The row of a friction, or a number past the last row if the friction is outside.
@@ -123,8 +123,9 @@ impl RowGrid {
 
 /// Number of patterns from the start of the first row to that of row `row`: the smallest whose product with `density`
 /// reaches it.
-fn offset(row: u64, density: NonZeroU32) -> u64 {
-    (row << 32).div_ceil(u64::from(density.get()))
+fn offset(row: usize, density: NonZeroU32) -> u64 {
+    let (patterns, remainder) = divide_wide(row as u32, 0, density);
+    patterns + u64::from(remainder > 0)
 }
 
 #[inline]
