@@ -50,6 +50,8 @@ pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
 pub use rig::{BoardMemory, Rig, RigConfig};
-pub use stroke::{FingerState, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow};
+pub use stroke::{
+    FingerState, HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow,
+};
 pub use touch::TouchConfig;
 pub use world::{Felt, OwnFinger, ReferenceFriction, World, WorldConfig, WorldFault, WorldOptions};

@@ -9,7 +9,7 @@ mod sweep;
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
 pub use error::StrokeError;
 use human::Reconstruction;
-pub use human::{HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS};
+pub use human::{HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS};
 use rows::Rows;
 use straight::Straight;
 use sweep::Sweep;

@@ -23,8 +23,8 @@ pub const HUMAN_TUNING_SEEDS: RangeInclusive<u64> = 1001..=1999;
 const MEDIANS_M_PER_S: [f64; 2] = [0.048, 0.436];
 /// Largest median speed, m/s.
 const MEDIAN_MAX_M_PER_S: f64 = 10.0;
-/// Longest stroke, s, since every millisecond is stored.
-const DURATION_MAX_S: f64 = 600.0;
+/// Longest stroke of a person, s, since every millisecond is stored.
+pub const HUMAN_STROKE_MAX_S: f64 = 600.0;
 /// Time between two stored places, s. Linear interpolation deviates by less than 1 um from the true path.
 const ROW_S: f64 = 1e-3;
 /// Margin at each edge of the screen, as a fraction of its size, at which a touch ends.
@@ -128,7 +128,7 @@ pub(super) fn rows(
     seed: u64,
 ) -> Result<Rows, StrokeError> {
     let screen_m = [above_zero("screen width in m", width_m)?, above_zero("screen height in m", height_m)?];
-    if !(duration_s > ROW_S && duration_s <= DURATION_MAX_S) {
+    if !(duration_s > ROW_S && duration_s <= HUMAN_STROKE_MAX_S) {
         let expected = "above 0.001 and at most 600 for a human stroke";
         return Err(OutOfRange { name: "duration_s", expected, found: duration_s }.into());
     }

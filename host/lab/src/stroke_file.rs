@@ -6,6 +6,7 @@ use frixel_hil_sim::{Point, Stroke, StrokeError, StrokeRow};
 use thiserror::Error;
 
 use crate::fit::FORCE_MAX_N;
+use crate::simulate::{STROKE_MAX_S, StrokeOptionsError};
 use crate::table::{Column, Place, Row, Table, TableError, Unit};
 
 const TIME: Column = Column::new("t_s", "seconds").converted(Unit::Seconds);
@@ -110,7 +111,13 @@ impl StrokeFile {
                 "the stroke has {found}: give at least two, so that the finger moves in time"
             )));
         }
-        Ok(Self { stroke: Stroke::through_rows(&rows)?, ignored_columns, understood })
+        let stroke = Stroke::through_rows(&rows)?;
+        let seconds = stroke.duration_s();
+        if seconds > STROKE_MAX_S {
+            let too_long = StrokeOptionsError::TooLong { seconds };
+            return Err(StrokeFileError::Refused(format!("{too_long}; its times are in seconds")));
+        }
+        Ok(Self { stroke, ignored_columns, understood })
     }
 }
 

@@ -101,6 +101,10 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
     [
         (lambda: Simulator(FLAT, stroke=Stroke.straight((500, 20), (600, 20))).run(), "nowhere on the screen"),
         (lambda: Stroke.straight((5, 20), (60, 20), speed_mm_s=-5), "speed_mm_s is a number above 0, found -5"),
+        (
+            lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (60, 20), speed_mm_s=20_000)).run(),
+            "the finger slides at 20000 mm/s: give a speed above 0, at most 10000 mm/s",
+        ),
         (lambda: Stroke.straight((5, np.nan), (60, 20)), "from_mm is x and y in mm, found"),
         (lambda: Stroke.human(1, seconds=-1), "seconds is a number above 0, found -1"),
         (Stroke, "a stroke is made by Stroke.straight, human or from_arrays"),

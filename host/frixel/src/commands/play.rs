@@ -33,7 +33,7 @@ use crate::output::{Effects, Report};
 use super::argument::RARE;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
-use super::stroke::StrokeArgs;
+use super::stroke::{StrokeArgs, of_stroke_options};
 use super::terminal::{self, note, note_refusals, print_line};
 use super::{argument, waiting};
 use live_scene::LiveScene;
@@ -148,7 +148,7 @@ impl PlayArgs {
     /// An error of the options in the words of the command.
     fn error(&self, error: PlayOptionsError) -> anyhow::Error {
         match error {
-            PlayOptionsError::Stroke(error) => self.stroke.error(error),
+            PlayOptionsError::Stroke(error) => of_stroke_options(error),
             PlayOptionsError::RowRate { .. } => anyhow!("--csv-hz: {error}"),
             PlayOptionsError::OffScreen { .. } => match self.stroke.file() {
                 Some(file) => anyhow!("{}: {error}", file.display()),

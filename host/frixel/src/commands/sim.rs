@@ -21,14 +21,19 @@ const ROWS_HZ: u32 = 1000;
 
 pub(super) fn run(args: &SimArgs) -> Result<()> {
     let interrupt = Interrupt::watch()?;
-    let stroke = match args.stroke.stroke(BUNDLED_SCREEN_M, None, args.seed)? {
+    let screen_m = match args.screen.as_deref() {
+        Some(name) => {
+            let screen = screen(Some(name))?.1;
+            [screen.width_mm, screen.height_mm].map(|side_mm| 1e-3 * side_mm)
+        }
+        None => BUNDLED_SCREEN_M,
+    };
+    let stroke = match args.stroke.stroke(screen_m, None, args.seed)? {
         Some(stroke) => stroke.looped(REPEAT_PAUSE_S),
-        None => endless_sweep(BUNDLED_SCREEN_M),
+        None => endless_sweep(screen_m),
     };
     let stroke = stroke.map_err(of_generated_stroke)?;
     if args.stroke.is_given() {
-        let screen = screen(args.screen.as_deref())?.1;
-        let screen_m = [screen.width_mm, screen.height_mm].map(|side_mm| 1e-3 * side_mm);
         // The scene that will play may be made for a larger screen.
         if let Err(error) = note_off_screen(&args.stroke.name(), &stroke, screen_m, stroke.duration_s()) {
             note(format_args!("warning: {error}"));

@@ -10,10 +10,11 @@ use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
 use frixel_lab::GeneratedStroke;
 use frixel_lab::simulate::{
-    PlayOptions, PlayOptionsError, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX, part_off_screen, side_mm,
+    PlayOptions, PlayOptionsError, STRAIGHT_MAX_M_PER_S, StrokeOptions, StrokeOptionsError, TIMES_MAX, part_off_screen,
+    side_mm,
 };
 use frixel_lab::stroke_file::StrokeFile;
-use frixel_scene::{Nearest, Shown};
+use frixel_scene::Nearest;
 
 use super::argument::{RARE, above_zero_to, number, whole};
 use super::terminal::{note, note_interrupted, note_understood};
@@ -93,18 +94,7 @@ impl StrokeArgs {
         if let Some(path) = self.file() {
             return from_file(path).map(Some);
         }
-        self.options().generated(screen_m, seconds, seed).map_err(|error| self.error(error))
-    }
-
-    /// The error in the words of the options.
-    pub(super) fn error(&self, error: StrokeOptionsError) -> anyhow::Error {
-        match error {
-            StrokeOptionsError::InPlace => anyhow!("--from and --to are the same place: give two places that differ"),
-            StrokeOptionsError::TooLong { seconds } => too_long(&self.name(), seconds),
-            StrokeOptionsError::TooOften { .. } => anyhow!("--times: {error}"),
-            StrokeOptionsError::Straight(source) => anyhow!("--from and --to: {source}; give two places that differ"),
-            StrokeOptionsError::Generated(source) => of_generated_stroke(source),
-        }
+        self.options().generated(screen_m, seconds, seed).map_err(of_stroke_options)
     }
 
     /// What the stroke is called in messages.
@@ -118,9 +108,16 @@ fn generated(option: &Path) -> Option<GeneratedStroke> {
     option.to_str().and_then(GeneratedStroke::named)
 }
 
-fn too_long(name: &str, seconds: f64) -> anyhow::Error {
-    let seconds = Shown(seconds);
-    anyhow!("{name} lasts {seconds} s, longer than a day (86400 s): give a shorter stroke; its times are in seconds")
+/// The error in the words of the options.
+pub(super) fn of_stroke_options(error: StrokeOptionsError) -> anyhow::Error {
+    match error {
+        StrokeOptionsError::InPlace => anyhow!("--from and --to are the same place: give two places that differ"),
+        StrokeOptionsError::TooLong { .. } => anyhow!("{error}"),
+        StrokeOptionsError::Speed { .. } => anyhow!("--speed: {error}"),
+        StrokeOptionsError::TooOften { .. } => anyhow!("--times: {error}"),
+        StrokeOptionsError::Straight(source) => anyhow!("--from and --to: {source}; give two places that differ"),
+        StrokeOptionsError::Generated(source) => of_generated_stroke(source),
+    }
 }
 
 /// Why a stroke cannot be read. One without the ending of a file may be a name with a typing mistake.
@@ -138,10 +135,6 @@ pub(super) fn from_file(path: &Path) -> Result<Stroke> {
     let file = StrokeFile::read(bytes.as_slice()).map_err(at(path.display()))?;
     let StrokeFile { stroke, ignored_columns, understood } = file;
     note_understood(path, understood.as_deref());
-    let seconds = stroke.duration_s();
-    if seconds > STROKE_MAX_S {
-        return Err(too_long(&path.display().to_string(), seconds));
-    }
     if !ignored_columns.is_empty() {
         let names = ignored_columns.join(", ");
         note(format_args!(
@@ -163,7 +156,8 @@ fn place_mm(text: &str) -> Result<Point, String> {
 
 /// Parses a speed in mm/s.
 fn speed_m_per_s(text: &str) -> Result<f64, String> {
-    let speed_mm_per_s = number(text, above_zero_to(10_000.0), "a speed above 0, at most 10000 mm/s")?;
+    let speed_mm_per_s =
+        number(text, above_zero_to(1e3 * STRAIGHT_MAX_M_PER_S), "a speed above 0, at most 10000 mm/s")?;
     Ok(1e-3 * speed_mm_per_s)
 }
 

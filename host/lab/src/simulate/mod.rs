@@ -14,7 +14,7 @@ use thiserror::Error;
 
 pub use checks::{check_duration, part_off_screen, side_mm, ticks_per_row};
 pub use default_stroke::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, default_stroke, endless_sweep};
-pub use options::{PlayOptions, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX};
+pub use options::{PlayOptions, STRAIGHT_MAX_M_PER_S, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX};
 
 /// Why options describe no play.
 #[derive(Debug, Error)]

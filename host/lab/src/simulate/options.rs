@@ -1,20 +1,23 @@
 //! The options of a play, which a recording has so that it can be played again.
 
-use frixel_hil_sim::{Point, Stroke, StrokeError};
+use frixel_hil_sim::{HUMAN_STROKE_MAX_S, Point, Stroke, StrokeError};
+use frixel_scene::Shown;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::REPEAT_PAUSE_S;
 use crate::GeneratedStroke;
 
 /// Most times that a finger goes along a straight stroke.
 pub const TIMES_MAX: u32 = 100_000;
 /// Longest stroke: one day, in s.
 pub const STROKE_MAX_S: f64 = 86_400.0;
-/// Duration of a generated stroke unless another is given, s, and the longest.
+/// Duration of a generated stroke unless another is given, s.
 const GENERATED_S: f64 = 10.0;
-const GENERATED_MAX_S: f64 = 600.0;
 /// Speed of a straight stroke unless another is given, m/s.
 const STRAIGHT_M_PER_S: f64 = 0.1;
+/// Largest speed of a straight stroke, m/s.
+pub const STRAIGHT_MAX_M_PER_S: f64 = 10.0;
 /// Time between two places of a minimum-jerk stroke that goes back and forth, s.
 const SAMPLE_PERIOD_S: f64 = 1e-3;
 
@@ -107,10 +110,16 @@ pub enum StrokeOptionsError {
     #[error("the stroke starts and ends at the same place: give two places that differ")]
     InPlace,
     /// It takes too long.
-    #[error("the stroke lasts {seconds} s, longer than a day (86400 s): give a shorter one")]
+    #[error("the stroke lasts {} s, longer than a day ({STROKE_MAX_S} s): give a shorter one", Shown(*.seconds))]
     TooLong {
         /// Its duration, s.
         seconds: f64,
+    },
+    /// The finger slides too slowly or too fast.
+    #[error("the finger slides at {} mm/s: give a speed above 0, at most {} mm/s", 1e3 * .m_per_s, 1e3 * STRAIGHT_MAX_M_PER_S)]
+    Speed {
+        /// Its speed, m/s.
+        m_per_s: f64,
     },
     /// The finger goes along it too often.
     #[error("the finger goes along the stroke {times} times, more than {TIMES_MAX}: let it go less often")]
@@ -134,6 +143,7 @@ impl StrokeOptions {
 
     /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers
     /// a screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
+    /// A person's stroke repeats after [`HUMAN_STROKE_MAX_S`].
     pub fn generated(
         &self,
         screen_m: [f64; 2],
@@ -141,8 +151,10 @@ impl StrokeOptions {
         seed: u64,
     ) -> Result<Option<Stroke>, StrokeOptionsError> {
         if let Some(generated) = self.name.as_deref().and_then(GeneratedStroke::named) {
-            let seconds = self.human_seconds.or(seconds).unwrap_or(GENERATED_S).min(GENERATED_MAX_S);
-            let stroke = generated.stroke(screen_m, seconds, None, self.human_seed.unwrap_or(seed));
+            let seconds = self.human_seconds.or(seconds).unwrap_or(GENERATED_S);
+            let max_s = if generated.is_of_people() { HUMAN_STROKE_MAX_S } else { STROKE_MAX_S };
+            let stroke = generated.stroke(screen_m, seconds.min(max_s), None, self.human_seed.unwrap_or(seed));
+            let stroke = if seconds > max_s { stroke.and_then(|once| once.looped(REPEAT_PAUSE_S)) } else { stroke };
             return stroke.map(Some).map_err(StrokeOptionsError::Generated);
         }
         let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
@@ -158,6 +170,9 @@ impl StrokeOptions {
         }
         let failed = StrokeOptionsError::Straight;
         let (speed_m_per_s, times) = (self.speed_m_per_s.unwrap_or(STRAIGHT_M_PER_S), self.times.unwrap_or(1));
+        if !(speed_m_per_s > 0.0 && speed_m_per_s <= STRAIGHT_MAX_M_PER_S) {
+            return Err(StrokeOptionsError::Speed { m_per_s: speed_m_per_s });
+        }
         if times > TIMES_MAX {
             return Err(StrokeOptionsError::TooOften { times });
         }
@@ -213,7 +228,19 @@ mod tests {
     }
 
     #[test]
-    fn a_stroke_in_place_or_longer_than_a_day_is_refused() {
+    fn a_person_repeats_the_longest_stroke() {
+        let stroke = human(None, None).generated(SCREEN_M, Some(900.0), 5).unwrap().unwrap();
+        let once = human(None, None).generated(SCREEN_M, Some(HUMAN_STROKE_MAX_S), 5).unwrap().unwrap();
+        let again_s = once.duration_s() + REPEAT_PAUSE_S;
+        let x_m = |t_s: f64| stroke.at(t_s).map(|finger| finger.x_m);
+        let times = (0..1000).map(|step| 0.01 * f64::from(step));
+        let both: Vec<_> = times.filter_map(|t_s| x_m(t_s).zip(x_m(again_s + t_s))).collect();
+        assert!(both.len() > 500, "{}", both.len());
+        assert!(both.iter().all(|(first, again)| (first - again).abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_stroke_in_place_too_fast_or_longer_than_a_day_is_refused() {
         let straight = |to_m, speed_m_per_s| StrokeOptions {
             from_m: Some([0.01, 0.02]),
             to_m: Some(to_m),
@@ -223,7 +250,9 @@ mod tests {
         let refused = |options: &StrokeOptions| options.generated(SCREEN_M, None, 1).unwrap_err();
         assert!(matches!(refused(&straight([0.01, 0.02], 0.1)), StrokeOptionsError::InPlace));
         assert!(matches!(refused(&straight([0.1, 0.02], 1e-7)), StrokeOptionsError::TooLong { .. }));
-        assert!(matches!(refused(&straight([0.1, 0.02], 0.0)), StrokeOptionsError::Straight(_)));
+        for speed_m_per_s in [0.0, 10.1, f64::NAN] {
+            assert!(matches!(refused(&straight([0.1, 0.02], speed_m_per_s)), StrokeOptionsError::Speed { .. }));
+        }
         assert!(StrokeOptions::default().generated(SCREEN_M, None, 1).unwrap().is_none());
     }
 }
