@@ -98,7 +98,7 @@ pub(super) struct PlayArgs {
     )]
     csv_hz: u32,
     /// Let a real board drive its electrode.
-    #[arg(long)]
+    #[arg(long, requires = "port")]
     arm: bool,
     /// Play the scene anew whenever its file is saved.
     #[arg(long)]

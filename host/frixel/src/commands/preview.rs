@@ -31,7 +31,8 @@ pub(super) struct PreviewArgs {
     #[arg(long, value_name = "MM_PER_S", default_value_t = 100.0, value_parser = speed, allow_negative_numbers = true)]
     speed_mm_per_s: f64,
     /// Largest width of the map, in pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 1_000, value_parser = whole(100..=4_000_u32))]
+    #[arg(long, value_name = "PIXELS", default_value_t = 1_000)]
+    #[arg(value_parser = whole(100..=4_000_u32), allow_negative_numbers = true)]
     map_width: u32,
 }
 

@@ -30,12 +30,15 @@ pub(super) struct ScoreArgs {
     stroke: String,
     /// Play under N people of an assumed population, each with strokes of their own, not under the scene's finger.
     #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
+    #[arg(allow_negative_numbers = true)]
     people: Option<u64>,
     /// Number of human strokes, of each person.
     #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
+    #[arg(allow_negative_numbers = true)]
     strokes: u64,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.
     #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
+    #[arg(allow_negative_numbers = true)]
     seeds: u64,
     /// Length of a generated stroke.
     #[arg(long, value_name = "S", default_value_t = TrialPlan::SECONDS)]

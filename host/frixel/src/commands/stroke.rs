@@ -47,12 +47,14 @@ pub(super) struct StrokeArgs {
     to: Option<Point>,
     /// Mean speed of a straight stroke, in mm/s. Default: 100.
     #[arg(long, value_name = "MM_PER_S", value_parser = speed_m_per_s, requires = "from", help_heading = RARE)]
+    #[arg(allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Passes along a straight stroke, back and forth. Default: 1.
     #[arg(
         long,
         value_name = "N",
         value_parser = whole(1..=TIMES_MAX),
+        allow_negative_numbers = true,
         requires = "from",
         help_heading = RARE
     )]

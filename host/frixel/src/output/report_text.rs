@@ -125,8 +125,7 @@ impl Report {
         let verdicts = self.in_this_play.as_deref();
         let no_verdict = match verdicts {
             Some([]) => Some(
-                "the finger slid on no layer for long enough while the board drove: slide over a layer, or give a \
-                 smaller --speed",
+                "the finger slid on no layer for long enough while the board drove: slide over a layer, more slowly",
             ),
             _ => self.no_verdict,
         };

@@ -163,6 +163,12 @@ impl Values {
     }
 }
 
+/// The first item of a list that is there again.
+fn repeated<T: PartialEq>(items: &[T]) -> Option<&T> {
+    let (_, item) = items.iter().enumerate().find(|(at, item)| items.iter().take(*at).any(|before| before == *item))?;
+    Some(item)
+}
+
 /// Why there are no cells, in a sentence that names the file and the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
@@ -191,6 +197,10 @@ impl Plan {
         if self.touch.is_empty() {
             return refuse("touch", "empty".to_owned(), "100, 200, 500, or the file of a touch source");
         }
+        let lists = [("scenes", &self.scenes), ("screens", &self.screens), ("touch", &self.touch)];
+        if let Some((field, name)) = lists.iter().find_map(|(field, names)| Some((field, repeated(names)?))) {
+            return refuse(field, format!("a list with {name:?} twice"), "each once, since people would count twice");
+        }
         if !(1..=CELLS_MAX as u64).contains(&self.people) {
             return refuse("people", self.people.to_string(), &format!("a number from 1 to {CELLS_MAX}"));
         }
@@ -213,6 +223,9 @@ impl Plan {
                 return refuse(path, format!("a path of {parts} parts"), "the path of a field, of at most 64 parts");
             }
             match values {
+                Values::List(values) if repeated(values).is_some() => {
+                    return refuse(path, "a list with a value twice".to_owned(), "each value once");
+                }
                 Values::List(values) if values.is_empty() => {
                     return refuse(path, "empty".to_owned(), "a list of values, or { from, to, count }");
                 }

@@ -192,6 +192,8 @@ fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> Stri
         format!("; {SLASH_ADVICE}")
     } else if value == Some("") {
         "; the value after the `=` is missing".to_owned()
+    } else if let Some(lower) = value.map(str::to_ascii_lowercase).filter(|value| value == "true" || value == "false") {
+        format!("; write it in lower case: {lower}")
     } else if let Some(words) = value.filter(|value| are_bare_words(value)) {
         format!("; write a text in quotation marks: \"{}\"", brief(words))
     } else {
