@@ -1,5 +1,4 @@
-//! `frixel check`, `frixel score` and `frixel play` judge with one judge: the first two agree for the same finger,
-//! source and seed, and the third judges what its own finger felt.
+//! `frixel check` and `frixel score` judge with one judge: they agree for the same finger, source and seed.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::fs;
@@ -70,43 +69,4 @@ fn a_check_and_a_score_agree() {
             assert_eq!(layer["simulated_fingers"][verdict.key()], 1, "{name}: {layer}");
         }
     }
-}
-
-/// A strong and a faint plate under one stroke.
-const PLATES: &str = "\
-version = 1
-[[layer]]
-name = \"strong\"
-kind = \"constant\"
-friction_fraction = 0.9
-region = { x_mm = 20, y_mm = 20, width_mm = 30, height_mm = 40 }
-[[layer]]
-name = \"faint\"
-kind = \"constant\"
-friction_fraction = 0.01
-region = { x_mm = 70, y_mm = 20, width_mm = 30, height_mm = 40 }
-";
-
-#[test]
-fn a_play_judges_what_its_finger_felt() {
-    let out = tempfile::tempdir().unwrap();
-    fs::write(out.path().join("plates.toml"), PLATES).unwrap();
-    fs::write(out.path().join("way.csv"), "t_s,x_mm,y_mm\n0,10,40\n2,110,40\n").unwrap();
-    let play = |options: &[&str]| {
-        let line = [&["play", "plates.toml", "--stroke", "way.csv"], options].concat();
-        let output = run(out.path(), &line);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8_lossy(&output.stdout).into_owned()
-    };
-    let json: Value = serde_json::from_str(&play(&["--json"])).unwrap();
-    let verdicts: Vec<[&str; 2]> = json["in_this_play"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|layer| ["layer", "verdict"].map(|key| layer[key].as_str().unwrap()))
-        .collect();
-    assert_eq!(verdicts, [["layer 1 \"strong\"", "felt"], ["layer 2 \"faint\"", "not_felt"]]);
-    let said = play(&[]);
-    assert!(said.contains("  in this play     not felt: layer 2 \"faint\": "), "{said}");
-    assert!(said.contains("  in this play     felt: layer 1 \"strong\": "), "{said}");
 }

@@ -10,8 +10,8 @@ use std::fmt::Write;
 use std::iter::Take;
 use std::ops::RangeInclusive;
 
-use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal, SAMPLE_HZ};
-use frixel_hil_sim::{Board, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Stroke, TouchConfig, WorldOptions};
+use frixel_felt::fidelity::{Fidelity, FidelityMean, FidelitySample, Goal};
+use frixel_hil_sim::{Board, HUMAN_TEST_SEEDS, Stroke, TouchConfig, WorldOptions};
 use frixel_lab::score::Trial;
 use frixel_play::TO_THE_END;
 use frixel_scene::{Program, Scene, compile};
@@ -22,11 +22,6 @@ use crate::processes::repository;
 const SECONDS: f64 = 8.5;
 /// Swing of the texture: nearly all that the finger below has at 150 V.
 const SWING_N: f64 = 0.11;
-
-/// Makes the stroke of a person, as [`Stroke::human`] does.
-type Hand = fn(f64, f64, f64, Option<f64>, u64) -> Result<Stroke, frixel_hil_sim::StrokeError>;
-
-const HANDS: [(&str, Hand); 2] = [("human", Stroke::human), ("human-rough", Stroke::human_rough)];
 
 /// A bundled touch source, and the smallest feature that it is to be good for.
 #[derive(Clone, Copy)]
@@ -71,8 +66,8 @@ fn program(wavelength_mm: f64) -> Program {
     compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap()
 }
 
-fn record(world: &WorldOptions, program: &Program, hand: Hand, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
-    let stroke = hand(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
+fn record(world: &WorldOptions, program: &Program, speed_mm_s: f64, seed: u64) -> Vec<FidelitySample> {
+    let stroke = Stroke::human(0.12, 0.08, SECONDS, Some(1e-3 * speed_mm_s), seed).unwrap();
     let trial = Trial { stroke_name: format!("human {seed}"), stroke: stroke.into(), seed, finger: None };
     trial.play(program, world, TO_THE_END).unwrap()
 }
@@ -80,15 +75,14 @@ fn record(world: &WorldOptions, program: &Program, hand: Hand, speed_mm_s: f64, 
 fn felt(class: &Class, speed_mm_s: f64, seed: u64, change: impl FnOnce(&mut Program)) -> FidelityMean {
     let mut program = program(class.wavelength_mm);
     change(&mut program);
-    FidelityMean::of(&[Fidelity::of(&record(&world(class), &program, Stroke::human, speed_mm_s, seed)).unwrap()])
-        .unwrap()
+    FidelityMean::of(&[Fidelity::of(&record(&world(class), &program, speed_mm_s, seed)).unwrap()]).unwrap()
 }
 
 type Seeds = Take<RangeInclusive<u64>>;
 
 fn mean(class: &Class, speed_mm_s: f64, seeds: &Seeds) -> FidelityMean {
     let (world, program) = (world(class), program(class.wavelength_mm));
-    let play = |seed| Fidelity::of(&record(&world, &program, Stroke::human, speed_mm_s, seed)).unwrap();
+    let play = |seed| Fidelity::of(&record(&world, &program, speed_mm_s, seed)).unwrap();
     FidelityMean::of(&seeds.clone().map(play).collect::<Vec<_>>()).unwrap()
 }
 
@@ -152,76 +146,6 @@ fn textures_are_felt_within_the_goals_on_many_strokes_as_the_page_says() {
     let many = cases(&HUMAN_TEST_SEEDS.take(24));
     golden::hold_part(&repository().join("docs/design/touch.md"), "<!-- goals:", &table_of_goals(&many));
     hold_goals(&many);
-}
-
-/// A part of the time of touches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
-    /// The output is off though the finger slides at more than 10 mm/s: touch data is stale, or it was still.
-    OffWhileSliding,
-    /// The output is off under a slower finger.
-    OffWhileSlow,
-    /// The first 100 ms after the first report of a touch.
-    Landing,
-    /// Slower than a third of the median speed.
-    Slow,
-    Rest,
-}
-
-impl Phase {
-    const ALL: [Self; 5] = [Self::OffWhileSliding, Self::OffWhileSlow, Self::Landing, Self::Slow, Self::Rest];
-
-    fn of(sample: &FidelitySample, since_landing: usize, median_m_per_s: f64) -> Self {
-        let speed_m_per_s = sample.speed_m_per_s.unwrap_or(0.0);
-        match sample {
-            FidelitySample { is_driven: false, .. } if speed_m_per_s > 10e-3 => Self::OffWhileSliding,
-            FidelitySample { is_driven: false, .. } => Self::OffWhileSlow,
-            _ if (since_landing as f64) < 0.1 * SAMPLE_HZ => Self::Landing,
-            _ if speed_m_per_s < median_m_per_s / 3.0 => Self::Slow,
-            _ => Self::Rest,
-        }
-    }
-}
-
-/// Prints in which part of the time the error is: the share of its energy, and of the time.
-#[test]
-#[ignore = "takes minutes: where the error of the cases is, for whoever tunes the filter"]
-fn phases_of_the_error() {
-    for (name, hand) in HANDS {
-        println!("{name}: error; share of its energy / of the time: {:?}", Phase::ALL);
-        for (class, speed_mm_s, _) in CASES {
-            let world = world(&class);
-            let program = program(class.wavelength_mm);
-            let mut energy = [(0.0, 0_u32); Phase::ALL.len()];
-            let mut plays = Vec::new();
-            for seed in HUMAN_TUNING_SEEDS.take(6) {
-                let record = record(&world, &program, hand, speed_mm_s, seed);
-                plays.push(Fidelity::of(&record).unwrap());
-                for touch in record.split(|sample| sample.speed_m_per_s.is_none()) {
-                    for (index, sample) in touch.iter().enumerate() {
-                        let phase = Phase::of(sample, index, 1e-3 * speed_mm_s) as usize;
-                        energy[phase].0 += (sample.felt_n - sample.reference_n).powi(2);
-                        energy[phase].1 += 1;
-                    }
-                }
-            }
-            let (sum, time) = energy.iter().fold((0.0, 0), |(sum, time), (energy, count)| (sum + energy, time + count));
-            let share = |(energy, count): (f64, u32)| {
-                format!("{:3.0} / {:2.0} %", 100.0 * energy / sum, 100.0 * f64::from(count) / f64::from(time))
-            };
-            let found = FidelityMean::of(&plays).unwrap();
-            println!(
-                "| {} Hz, {} mm, {speed_mm_s} mm/s | {:.3} ({:.3}, {:.1} mN, {:.1} dB) | {} |",
-                class.source,
-                class.wavelength_mm,
-                found.error,
-                found.correlation,
-                1e3 * found.spurious_40_to_400_hz_n,
-                found.spurious_over_noise_db,
-                energy.map(share).join(" | ")
-            );
-        }
-    }
 }
 
 /// The checks above see an output that is not there: a volt gives less than a millionth of a newton.

@@ -2,7 +2,6 @@
 //! it wrote.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -86,49 +85,4 @@ fn a_calibrated_person_is_recovered() {
     .unwrap();
     let thick = fail(folder.path(), &["finger", "fit", "data.csv", "--screen", "thick.toml"]);
     assert!(thick.contains("the coating alone has 10.256 um"), "{thick}");
-}
-
-/// A finger whose friction grows as the voltage to the power 4 contradicts the contact model.
-#[test]
-fn a_finger_that_contradicts_the_model_is_fitted_and_played_by_its_own_law() {
-    let folder = TempDir::new().unwrap();
-    let law = person::Law::Power { voltage: 4.0, load: 1.0 };
-    let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,time_s,stroke,speed_mm_s\n");
-    for row in (person::Person { law, ..person::Person::example(1) }).record(&person::Protocol::default()) {
-        let (time_s, speed_mm_s) = (row.time_s.unwrap(), row.speed_mm_s.unwrap());
-        let (volts, load_n, friction_n) = (row.voltage_v_rms, row.normal_force_n, row.friction_n);
-        let stroke = row.stroke.unwrap();
-        writeln!(csv, "{volts},{load_n},{friction_n},{time_s},{stroke},{speed_mm_s}").unwrap();
-    }
-    fs::write(folder.path().join("data.csv"), csv).unwrap();
-    assert!(fail(folder.path(), &["finger", "fit", "data.csv", "-o", "z.toml"]).contains("--law empirical"));
-    assert!(!folder.path().join("z.toml").exists());
-
-    let empirical = ["finger", "fit", "data.csv", "-o", "z.toml", "--law", "empirical"];
-    fs::write(folder.path().join("z.svg"), "plots of an earlier fit").unwrap();
-    let said = succeed(folder.path(), &empirical);
-    assert!(!folder.path().join("z.svg").exists() && !said.contains("z.svg"), "{said}");
-    for words in ["empirical", "strokes left out", "up to this voltage", "z.toml"] {
-        assert!(said.contains(words), "{words}: {said}");
-    }
-    let text = fs::read_to_string(folder.path().join("z.toml")).unwrap();
-    let profile = FingerProfile::parse(&text, "z.toml").unwrap();
-    assert!(matches!(profile.evidence, Evidence::Empirical { .. }));
-    let scene =
-        "version = 1\nfinger = \"z.toml\"\n[[layer]]\nkind = \"constant\"\nabove = \"natural\"\nfriction_n = 0.05\n";
-    fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    assert!(succeed(folder.path(), &["check", "scene.toml"]).contains("empirical"));
-    succeed(folder.path(), &["play", "scene.toml", "--out", "out", "--ideal"]);
-    assert!(folder.path().join("out").is_dir());
-}
-
-#[test]
-fn a_board_that_drives_less_gives_no_verdict_on_the_model() {
-    let folder = TempDir::new().unwrap();
-    let said = succeed(folder.path(), &["finger", "calibrate", "-o", "data.csv", "--voltage", "80"]);
-    assert!(said.contains("below 100 V rms the recording cannot test the model"), "{said}");
-    assert!(fail(folder.path(), &["finger", "fit", "data.csv"]).contains("would be extrapolated"));
-    let json = succeed(folder.path(), &["finger", "fit", "data.csv", "--voltage", "80", "--json"]);
-    let fitted: Value = serde_json::from_str(&json).unwrap();
-    assert_eq!((&fitted["voltage_verdict"], &fitted["electric_friction_150_v_n"]), (&"none".into(), &Value::Null));
 }

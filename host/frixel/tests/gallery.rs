@@ -1,4 +1,4 @@
-//! Every scene of `scenes/` plays on the simulator, and `docs/design/gallery.md` shows it.
+//! Every scene of `scenes/` is felt on the simulator, as `docs/design/gallery.md` shows it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -7,24 +7,17 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use frixel::output::draw_preview_png;
-use frixel::scene_file;
+use frixel::scene_file::SceneFolder;
 use frixel_felt::Preview;
 use frixel_felt::judge::{Advice, LayerVerdict, Verdict};
-use frixel_felt::recorder::FeltRow;
-use frixel_hil_sim::{BoardMemory, FingerState, RigConfig, Stroke, WorldOptions};
-use frixel_lab::simulate::default_stroke;
-use frixel_layers::{Header, Scene as WireScene};
-use frixel_play::{Simulation, TO_THE_END, judge, simulate};
-use frixel_scene::reference::{Context, Reference, direction_of};
-use frixel_scene::{FingerProfile, Profile, Program, Scene, TargetRange, compile};
+use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_play::{TO_THE_END, judge};
+use frixel_scene::{FingerProfile, Profile, Program, Scene, compile};
 use frixel_testkit::golden;
-use frixel_wire::fault::Flags;
 
 use crate::processes::repository;
 
 const PICTURE_BYTES_MAX: u64 = 40 * 1024;
-/// How much the felt friction has to vary along a stroke over a scene, as a part of what the drive can add.
-const FELT_PART_MIN: f64 = 0.1;
 
 struct Entry {
     name: String,
@@ -33,19 +26,22 @@ struct Entry {
     program: Program,
 }
 
+/// Names and texts of the scenes, sorted.
+pub(crate) fn scenes() -> Vec<(String, String)> {
+    let paths = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    paths.sort();
+    let scene =
+        |path: &PathBuf| (path.file_stem().unwrap().to_string_lossy().into_owned(), fs::read_to_string(path).unwrap());
+    paths.iter().map(scene).collect()
+}
+
 fn gallery() -> Vec<Entry> {
     let rig = RigConfig::default();
-    let paths = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
-    let mut scenes: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
-    scenes.sort();
-    let entries = scenes.iter().map(|path| {
-        let scene = scene_file::load(path).unwrap();
-        Entry {
-            name: path.file_stem().unwrap().to_string_lossy().into_owned(),
-            text: fs::read_to_string(path).unwrap(),
-            program: compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap_or_else(|error| panic!("{error}")),
-            scene,
-        }
+    let entries = scenes().into_iter().map(|(name, text)| {
+        let scene = Scene::parse(&text, &name, &SceneFolder(repository().join("scenes"))).unwrap();
+        let program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap_or_else(|error| panic!("{error}"));
+        Entry { name, text, scene, program }
     });
     entries.collect()
 }
@@ -85,104 +81,6 @@ pub(crate) fn verdict_counts(layers: &[LayerVerdict]) -> String {
         (count > 0).then(|| format!("{count} {}", verdict.words()))
     });
     counts.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-/// A layer is touched if the reference friction at some place of the stroke is another without it.
-#[test]
-fn the_default_stroke_touches_every_layer() {
-    for Entry { name, program, .. } in &gallery() {
-        let stroke = default_stroke(program, None).unwrap();
-        let places: Vec<_> = (0..10_000).filter_map(|step| stroke.at(1e-3 * f64::from(step))).collect();
-        let frictions_n = |program: &Program| -> Vec<f64> {
-            let reference = Reference::new(program).with_vibrations_held();
-            let friction_n = |[before, place]: &[FingerState; 2]| {
-                let FingerState { x_m, y_m, speed_m_per_s } = *place;
-                let direction = direction_of([x_m - before.x_m, y_m - before.y_m]);
-                reference.electric_friction_at_n(&Context { x_m, y_m, speed_m_per_s, direction, ..Context::default() })
-            };
-            places.array_windows().map(friction_n).collect()
-        };
-        let whole_n = frictions_n(program);
-        for (number, title) in program.titles.iter().enumerate() {
-            let mut without = program.clone();
-            without.records.remove(number);
-            let without_n = frictions_n(&without);
-            let largest_n = whole_n.iter().zip(&without_n).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-            assert!(largest_n > 1e-3, "{name}: {title} is not touched");
-        }
-    }
-}
-
-#[test]
-fn every_scene_is_felt_without_a_fault_and_within_reach() {
-    let gallery = gallery();
-    assert!(gallery.len() >= 8, "{}", gallery.len());
-    for Entry { name, text, program, .. } in &gallery {
-        let rig = RigConfig::default();
-        let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-        let stroke = Stroke::sweep(width_m, height_m, 2.0).unwrap();
-        let simulation =
-            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 40, through_finger: false };
-        let simulated =
-            simulate(program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let rows = simulated.recorder.rows();
-        let felt =
-            rows.iter().filter_map(|row| row.felt_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0)));
-        let (least_n, most_n) =
-            felt.fold((f64::INFINITY, 0.0_f64), |(least, most), felt_n| (least.min(felt_n), most.max(felt_n)));
-        let part = (most_n - least_n) / program.reach.electric_friction_max_n;
-        assert!(part > FELT_PART_MIN, "{name}: felt from {least_n} to {most_n} N");
-        let flags = rows.iter().filter_map(|row| row.flags);
-        assert!(flags.clone().count() > 1_000, "{name}");
-        if !text.contains("saturate = true") {
-            let TargetRange { above, below, most_n, .. } = TargetRange::of(program);
-            assert_eq!((above.screen_percent, below.screen_percent), (0.0, 0.0), "{name}");
-            // One that asks for all of the reach may round to a last bit more.
-            let all = most_n > (1.0 - 1e-6) * program.reach.friction_max_n();
-            assert!(all || flags.clone().all(|flags| !flags.contains(Flags::SATURATED)), "{name} saturates");
-        }
-        // A fault would have ended the play, and the drive with it.
-        let wants = |row: &&FeltRow| {
-            let friction_n = row.reference_n.filter(|_| row.speed_mm_s.is_some_and(|speed| speed > 20.0));
-            friction_n.is_some_and(|friction_n| friction_n > program.reach.natural_friction_n + 1e-3)
-        };
-        let drives = |row: &&FeltRow| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0);
-        let last =
-            rows.iter().rfind(wants).zip(rows.iter().rfind(drives)).map(|(wanted, driven)| wanted.t_s - driven.t_s);
-        assert!(last.is_some_and(|late_s| late_s < 0.05), "{name}: the drive ends {last:?} s early");
-    }
-}
-
-/// The compiler says the largest friction that the scene asks for, and the board ends its table there. What is felt is
-/// the same to the last bit as with the whole table.
-#[test]
-fn no_scene_is_felt_otherwise_because_its_table_is_cut() {
-    let mut cut = 0;
-    for Entry { name, program, .. } in &gallery() {
-        let rig = RigConfig::default();
-        let bytes = program.scene_bytes();
-        let table = BoardMemory::table_rows(&WireScene::parse(&bytes).unwrap(), &rig.board).unwrap();
-        if table.filled == table.whole {
-            continue;
-        }
-        cut += 1;
-        let (width_m, height_m) = (program.header.screen_width_m.into(), program.header.screen_height_m.into());
-        let stroke = Stroke::sweep(width_m, height_m, 1.0).unwrap();
-        let simulation =
-            Simulation { rig, seconds: stroke.duration_s(), stroke, seed: 1, ticks_per_row: 10, through_finger: false };
-        let whole = Program { header: Header { electric_friction_max_n: None, ..program.header }, ..program.clone() };
-        let [with_cut, without] = [program, &whole].map(|program| {
-            let simulated =
-                simulate(program, &simulation, None, TO_THE_END).unwrap_or_else(|error| panic!("{name}: {error}"));
-            simulated.recorder.rows().to_vec()
-        });
-        assert!(program.header.electric_friction_max_n.is_some() && with_cut == without, "{name}");
-        assert!(
-            with_cut.iter().any(|row| row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms > 1.0)),
-            "{name}"
-        );
-    }
-    assert!(cut > 0);
 }
 
 /// The first comment of a scene is one plain sentence; the rest stands below the layers.

@@ -1,4 +1,4 @@
-//! `frixel board safety`: the tables of touch currents, as a person prints them.
+//! `docs/board/safety.md` and what it names: tests, scenarios, and numbers that `frixel board safety` prints.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::fmt::Write;
@@ -14,87 +14,8 @@ use frixel_scene::{FingerProfile, Profile, Program, Scene, compile_draft};
 use frixel_testkit::golden;
 use frixel_wire::hello::BoardLimits;
 
-use crate::gallery::verdict_counts;
+use crate::gallery::{scenes, verdict_counts};
 use crate::processes::{repository, succeed};
-
-fn printed(args: &[&str]) -> String {
-    succeed(&repository(), &[&["board", "safety"], args].concat())
-}
-
-/// The numbers of a line.
-fn numbers(line: &str) -> Vec<f64> {
-    line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
-}
-
-/// Carrier, drive, then the steady and the worst current of four coatings, and the worst coating's capacitance.
-fn rows(text: &str, is_bound: bool) -> Vec<Vec<f64>> {
-    let is_row = |line: &&str| line.contains(" Hz ") && line.contains(" V ") && line.contains("bound") == is_bound;
-    text.lines().take_while(|line| !line.starts_with("Faults")).filter(is_row).map(numbers).collect()
-}
-
-#[test]
-fn at_the_bound_no_current_is_above_its_limit_and_above_it_one_is() {
-    for args in [&[][..], &["--series-kohm", "43"], &["--series-kohm", "390"]] {
-        let text = printed(args);
-        let bounds = rows(&text, true);
-        assert_eq!(bounds.len(), 6, "{text}");
-        for row in bounds {
-            let worst = row[2..10].iter().copied().fold(0.0, f64::max);
-            assert!(worst <= 0.7 && worst > 0.5, "{row:?}");
-        }
-    }
-    // What the board would give without the bound.
-    let text = printed(&[]);
-    let slow: Vec<Vec<f64>> = rows(&text, false).into_iter().filter(|row| row[0] <= 1_000.0).collect();
-    assert!(slow.len() == 4 && slow.iter().all(|row| row[9] > 0.7), "{text}");
-}
-
-#[test]
-fn a_thicker_coating_lets_less_through_and_a_bridged_one_does_not_change() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("thick.toml");
-    std::fs::write(&path, "width_mm = 100\nheight_mm = 60\n[[coating]]\nthickness_um = 10\npermittivity = 3\n")
-        .unwrap();
-    let [thin, thick] = [printed(&[]), printed(&["--screen", path.to_str().unwrap()])];
-    assert!(thick.contains("0.53 nF"), "{thick}");
-    for (thin, thick) in rows(&thin, true).iter().zip(rows(&thick, true)) {
-        assert!(thick[2] < 0.75 * thin[2] && thick[3] < 0.75 * thin[3], "{thin:?} {thick:?}");
-        assert_eq!(thin[6..], thick[6..]);
-    }
-}
-
-#[test]
-fn the_resistance_for_a_voltage_keeps_it_within_the_bound() {
-    let text = printed(&["--voltage-v-rms", "150"]);
-    let lines: Vec<&str> = text.lines().filter(|line| line.contains("kOhm: ")).collect();
-    assert_eq!(lines.len(), 3, "{text}");
-    for line in lines {
-        let numbers = numbers(&line.replace("kOhm:", ""));
-        // Two of them can be soldered.
-        let half = 0.5 * numbers[1];
-        let mut row = (0..96).map(|step| (100.0 * 10_f64.powf(f64::from(step) / 96.0)).round());
-        assert!(row.any(|value| [1.0, 0.1].iter().any(|scale| (scale * value - half).abs() < 1e-6)), "{line}");
-        assert!(numbers[2] <= numbers[3] && numbers[2] > 150.0 && numbers[3] < 1.1 * numbers[2], "{line}");
-    }
-    // Fast carriers lose too much at the edges.
-    assert!(text.lines().any(|line| line.contains("1000 Hz") && line.contains("none")), "{text}");
-}
-
-#[test]
-fn what_a_pico_cannot_have_is_not_printed() {
-    let text = printed(&["--board", "pico"]);
-    assert!(text.contains("nothing stores them on this board yet, and it allows 10 V peak"), "{text}");
-    assert!(text.contains(" 1000 Hz") && !text.contains(" 2000 Hz"), "{text}");
-    assert!(printed(&[]).contains(" 5000 Hz"));
-}
-
-#[test]
-fn a_series_resistance_that_no_firmware_takes_is_named() {
-    for (kohm, is_taken) in [("10", false), ("41.9", false), ("42.1", true)] {
-        let text = printed(&["--series-kohm", kohm]);
-        assert_eq!(!text.contains("no firmware takes that: "), is_taken, "{text}");
-    }
-}
 
 const PAGE: &str = include_str!("../../../docs/board/safety.md");
 const FIRST_BOARD: &str = include_str!("../../../docs/board/first-board.md");
@@ -186,11 +107,7 @@ fn gallery() -> String {
     let drives = drives();
     let names = drives.each_ref().map(|drive| drive.name);
     let mut text = format!("| scene | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
-    let folder = fs::read_dir(repository().join("scenes")).unwrap().map(|entry| entry.unwrap().path());
-    let mut paths: Vec<PathBuf> = folder.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
-    paths.sort();
-    for path in paths {
-        let scene = fs::read_to_string(&path).unwrap();
+    for (name, scene) in scenes() {
         let cells = drives.each_ref().map(|drive| {
             let program = draft(&scene, "example", drive);
             let judgement =
@@ -198,7 +115,6 @@ fn gallery() -> String {
                     .unwrap();
             verdict_counts(&judgement.layers)
         });
-        let name = path.file_stem().unwrap().to_string_lossy();
         let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));
     }
     text
@@ -213,7 +129,7 @@ fn the_pages_say_what_is_felt_within_the_limits() {
 /// The page's other numbers are printed by its command.
 #[test]
 fn the_page_has_the_numbers_of_the_command() {
-    let text = printed(&[]);
+    let text = succeed(&repository(), &["board", "safety"]);
     for (found, said) in [
         ("125 Hz   28.7 V bound", "the bound is 28.7 V"),
         ("1.21  one of two", "1.21 mA at the bound at 1 kHz"),

@@ -213,28 +213,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_command_without_its_group_is_answered_by_its_name() {
-        for (line, name) in [
-            ("scene check s.toml", "`frixel check`"),
-            ("scene preview s.toml", "`frixel preview`"),
-            ("scene schema", "`frixel schema`"),
-            ("ports", "`frixel board ports`"),
-            ("info --port p", "`frixel board info`"),
-            ("selftest", "`frixel board selftest`"),
-            ("faults", "`frixel board faults`"),
-            ("record -o r.csv", "`frixel board record`"),
-            ("safety", "`frixel board safety`"),
-            ("calibrate -o c.csv", "`frixel finger calibrate`"),
-            ("fit c.csv", "`frixel finger fit`"),
-        ] {
-            let words = ["frixel"].into_iter().chain(line.split(' '));
-            let error = with_tip(Cli::try_parse_from(words).unwrap_err());
-            assert_eq!(error.exit_code(), 2, "{line}");
-            assert!(error.to_string().contains(name), "{line}: {error}");
-        }
-    }
-
     /// Lines and columns of a terminal that shows a command's help without scrolling.
     const SCREEN: (usize, usize) = (40, 120);
 

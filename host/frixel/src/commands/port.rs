@@ -47,23 +47,3 @@ fn advice(port: &str, boards: &[&str]) -> String {
         None => takes,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_port_that_is_no_path_is_told_what_the_command_takes() {
-        let play = |port| advice(port, &BOARDS);
-        let takes = "--port takes `sim`, `qemu`, `pico` or the path of a board's serial port";
-        assert_eq!(play("picco"), format!("{takes}; did you mean `pico`?"));
-        assert_eq!(play("QEMU"), format!("{takes}; did you mean `qemu`?"));
-        assert_eq!(play("COM7"), takes);
-        let takes = "--port takes the path of a board's serial port";
-        assert_eq!(advice("pico", &[]), format!("{takes} here, and `pico` is a board of `frixel play`"));
-        let virtual_one = "start `frixel sim`, and give the port that it prints";
-        assert_eq!(advice("sim", &[]), format!("{takes} here: {virtual_one}"));
-        let takes = "--port takes `sim` or the path of a board's serial port";
-        assert_eq!(advice("qemu", &["sim"]), format!("{takes} here, and `qemu` is a board of `frixel play`"));
-    }
-}

@@ -182,17 +182,6 @@ mod tests {
     }
 
     #[test]
-    fn a_port_and_a_missing_page_are_refused_with_what_to_do() {
-        let args = StudioArgs { page: None, no_browser: true, port: None };
-        let with_port = StudioArgs { port: Some("/dev/ttyACM0".to_owned()), ..args };
-        let error = page(&with_port).unwrap_err().to_string();
-        assert!(error.contains("choose the port in the page, in Chromium or Firefox"), "{error}");
-        let nowhere = StudioArgs { page: Some("nowhere.html".into()), no_browser: true, port: None };
-        let error = page(&nowhere).unwrap_err().to_string();
-        assert!(error.contains("nowhere.html cannot be read (") && error.contains("`cargo xtask studio`"), "{error}");
-    }
-
-    #[test]
     fn a_page_that_lies_beside_the_command_is_found() {
         let folder = tempfile::tempdir().unwrap();
         let (program, page) = (folder.path().join("frixel"), folder.path().join(PAGE_BESIDE));

@@ -107,15 +107,6 @@ fn csv_bytes() {
     );
 }
 
-#[test]
-fn files_that_cannot_be_written_are_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("missing").join("felt.csv");
-    let output = OutputFile::new(&path, "--out", &Inputs::default()).expect("a place");
-    let error = output.create().expect_err("no folder").to_string();
-    assert!(error.starts_with(&format!("{} cannot be written (", path.display())), "{error}");
-}
-
 /// Noise that never repeats, from 0 to 1.
 fn noise(row: usize) -> f64 {
     (row as f64 * 0.618_033_988_749_895).fract()

@@ -291,18 +291,6 @@ mod tests {
 
     use super::*;
 
-    #[test]
-    fn a_file_that_cannot_be_read_is_reported_with_its_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        let name = path.display().to_string();
-        let error = load(&path).unwrap_err().to_string();
-        assert!(error.starts_with(&format!("{name}: this scene file cannot be read (")), "{error}");
-        fs::write(&path, b"version = 1\nname = \"\xff\"").unwrap();
-        let error = load(&path).unwrap_err().to_string();
-        assert_eq!(error, format!("{name}:2:9: this byte is not UTF-8 text: save the file as UTF-8"));
-    }
-
     /// The simulator's finger before a scene is played is the bundled one on the bundled screen.
     #[test]
     fn the_simulator_has_the_example_finger() {

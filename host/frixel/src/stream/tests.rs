@@ -109,22 +109,14 @@ fn more_samples_than_ticks_are_brought_below_them() {
 }
 
 #[test]
-fn a_file_that_is_not_a_stream_gives_one_sentence() {
+fn samples_that_are_none_or_no_numbers_give_one_sentence() {
     let folder = tempdir().unwrap();
     let message = |path: &Path| wav(path, TICK_HZ).err().unwrap().to_string();
     let path = folder.path().join("none.wav");
-    assert!(message(&path).contains("none.wav cannot be streamed"));
-    std::fs::write(&path, "no RIFF").unwrap();
-    assert!(message(&path).contains("give a WAV file"));
     write::<i32>(&path, spec(1, 8_000, 16, SampleFormat::Int), &[]);
     assert!(message(&path).contains("has no samples"));
     write(&path, spec(1, 8_000, 32, SampleFormat::Float), &[0.0, f32::NAN]);
     assert!(message(&path).contains("sample 1 of"));
-    for sample_hz in [0, 40_001] {
-        let error = raw(Cursor::new([]), sample_hz, TICK_HZ, true).err().unwrap();
-        let expected = format!("a stream of {sample_hz} samples a second cannot be played: give 1 to {TICK_HZ}, ");
-        assert!(error.to_string().starts_with(&expected), "{error}");
-    }
 }
 
 #[test]

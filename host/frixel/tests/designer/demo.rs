@@ -1,6 +1,7 @@
-//! `frixel demo`, twice.
+//! `frixel` without a command, which is the demo, and `frixel demo`.
 
 use std::fs;
+use std::path::Path;
 
 use tempfile::TempDir;
 
@@ -10,7 +11,12 @@ use super::succeed;
 fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("frixel-out/brick.toml");
-    let (said, _) = succeed(folder.path(), &["demo"]);
+    let (said, _) = succeed(folder.path(), &[]);
+    for name in ["felt.csv", "felt.svg", "scene.png"] {
+        let file = Path::new("frixel-out").join(name);
+        assert!(said.contains(&file.display().to_string()), "{name} is not named in {said}");
+        assert!(fs::metadata(folder.path().join(file)).unwrap().len() > 10_000);
+    }
     assert!(said.contains("brick.toml is new") && said.contains("on mortar its friction rises"), "{said}");
     assert!(said.contains("frixel play frixel-out/brick.toml"), "{said}");
 

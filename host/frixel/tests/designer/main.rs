@@ -1,15 +1,12 @@
 //! The command as a scene's designer uses it, as a process of its own.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-mod control;
 mod demo;
 mod first_scene;
 mod numbers;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
-mod streams;
-mod strokes;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

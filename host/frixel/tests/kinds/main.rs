@@ -9,7 +9,6 @@
 
 mod cases;
 mod expected;
-mod stream;
 
 use std::path::Path;
 

@@ -146,56 +146,6 @@ fn a_scene_plays_through_a_real_serial_port() {
     assert!(!log.drives_between(stopped_s + 1e-3, f64::INFINITY));
 }
 
-const STREAM_SCENE: &str = r#"
-version = 1
-screen = { width_mm = 120, height_mm = 110, coating = { thickness_um = 10, permittivity = 1 } }
-finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, skin_gap_um = 0 }
-drive = { host_timeout_ms = 1000 }
-[[layer]]
-kind = "stream"
-low_n = 0.0
-high_n = 0.02
-"#;
-
-/// A tone that is slow beside the millisecond between two telemetry messages.
-fn write_tone(path: &Path) {
-    let spec = WavSpec { channels: 1, sample_rate: 1_000, bits_per_sample: 16, sample_format: SampleFormat::Int };
-    let mut writer = WavWriter::create(path, spec).unwrap();
-    for index in 0..60_000_u32 {
-        let turns = 4.0 * f64::from(index) / 1_000.0;
-        writer.write_sample((32_767.0 * (std::f64::consts::TAU * turns).sin()) as i16).unwrap();
-    }
-    writer.finalize().unwrap();
-}
-
-/// The board's command is the stream as it is seen from outside. The reference, made from what the host has sent, has
-/// to follow it.
-#[test]
-fn the_reference_of_a_board_at_a_port_has_what_is_streamed() {
-    let board = Board::start();
-    let folder = TempDir::new().unwrap();
-    let (scene, tone) = (folder.path().join("stream.toml"), folder.path().join("tone.wav"));
-    fs::write(&scene, STREAM_SCENE).unwrap();
-    write_tone(&tone);
-    let mut command = play_command(&scene, &board.board.port, "600", folder.path());
-    let process = command.arg("--stream").arg(&tone).spawn().unwrap();
-    until("rows are written", || rows_in(folder.path()) > 1_500);
-    let played = interrupt(process);
-    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
-    let json: serde_json::Value = serde_json::from_slice(&played.stdout).unwrap();
-    assert!(json["reference_max_n"].as_f64().unwrap() > 0.265, "{json}");
-
-    let friction_n = |cell: &str| cell.parse::<f64>().ok();
-    let rows = felt_cells(folder.path());
-    let pairs: Vec<(f64, f64)> =
-        rows.iter().filter_map(|row| Some((friction_n(&row[4])?, friction_n(&row[5])?))).collect();
-    assert!(pairs.len() > 500, "{} rows with a finger", pairs.len());
-    let near = pairs.iter().filter(|(reference_n, commanded_n)| (reference_n - commanded_n).abs() < 2e-3).count();
-    assert!(near * 10 > pairs.len() * 9, "the reference is near the command in {near} of {} rows", pairs.len());
-    let varied = pairs.iter().filter(|(_, commanded_n)| (commanded_n - 0.25).abs() > 4e-3).count();
-    assert!(varied * 2 > pairs.len(), "something was streamed in {varied} of {} rows", pairs.len());
-}
-
 #[test]
 fn a_board_that_vanishes_is_said_in_a_sentence() {
     let mut board = Board::start();
@@ -227,13 +177,4 @@ fn a_folder_that_cannot_be_written_is_said_before_the_board_plays() {
     let said = String::from_utf8(refused.stderr).unwrap();
     assert!(said.lines().last().unwrap().contains("cannot be written"), "{said}");
     assert!(board.interrupt().events.is_empty(), "the board was armed");
-}
-
-#[test]
-fn a_virtual_board_that_cannot_write_announces_no_port() {
-    let file = tempfile::NamedTempFile::new().unwrap();
-    let refused = frixel().args(["sim", "--out"]).arg(file.path().join("out")).output().unwrap();
-    assert_eq!(refused.status.code(), Some(1));
-    assert_eq!(String::from_utf8(refused.stdout).unwrap(), "");
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("cannot be written"));
 }

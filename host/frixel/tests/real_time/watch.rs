@@ -150,30 +150,6 @@ fn a_picture_that_has_no_room_beside_the_one_that_plays_replaces_it_and_is_follo
     assert_eq!(said().matches("is gone").count(), 1, "{}", said());
 }
 
-#[test]
-fn an_included_file_is_followed() {
-    let folder = TempDir::new().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    let part = |friction: &str| format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_n = {friction}\n");
-    fs::create_dir(path("parts")).unwrap();
-    fs::write(path("parts/flat.toml"), part("0.26")).unwrap();
-    let text = "version = 1\ninclude = [\"parts/flat.toml\"]\n[drive]\nhost_timeout_ms = 1000\n";
-    fs::write(path("scene.toml"), text).unwrap();
-    let mut board = virtual_board(folder.path(), &[]);
-    let mut client = watching_client(folder.path(), &board.port);
-    let said = || fs::read_to_string(path("said")).unwrap();
-    let last_n = || commanded_n(&path("client")).last().copied().unwrap_or_default();
-    until("the first scene plays", || is(last_n(), 0.26));
-
-    fs::write(path("parts/flat.toml"), part("0.27")).unwrap();
-    until("the saved part plays", || is(last_n(), 0.27));
-
-    fs::write(path("parts/flat.toml"), part("27")).unwrap();
-    until("the mistake is reported in its file", || said().contains("parts/flat.toml:4:14: "));
-    assert!(client.interrupt(), "{}", said());
-    assert!(board.process.interrupt());
-}
-
 /// On the simulator, a saved scene plays from the beginning, drafts included. After a mistake, the files of the play
 /// before stay. A virtual board behind a port refuses the draft.
 #[test]

@@ -43,6 +43,8 @@ fn stroke(name: &str, seed: u64) -> Stroke {
 struct Errors {
     /// Rms friction error, mean square over the seeds.
     friction_rms: f64,
+    /// The largest rms friction error of a seed.
+    friction_most: f64,
     /// Largest inversion error, the DAC's step included, over all ticks of all seeds.
     inversion_max: f64,
 }
@@ -56,11 +58,12 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
         let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000, through_finger: false };
         simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.summary()
     });
-    let squares = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n.powi(2));
+    let friction = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n);
     let inversion = summaries.iter().map(|summary| summary.inversion_error.unwrap().max_n);
     let percent = 100.0 / program.reach.electric_friction_max_n;
     Errors {
-        friction_rms: percent * (squares.sum::<f64>() / SEEDS.len() as f64).sqrt(),
+        friction_rms: percent * (friction.clone().map(|rms_n| rms_n * rms_n).sum::<f64>() / SEEDS.len() as f64).sqrt(),
+        friction_most: percent * friction.fold(0.0, f64::max),
         inversion_max: percent * inversion.fold(0.0, f64::max),
     }
 }
@@ -83,11 +86,27 @@ fn csv(curves: &[Vec<Errors>]) -> String {
         String::from("latency_ms,stroke,rms_error_percent_of_range,inversion_error_at_most_percent_of_range\n");
     for ((name, ..), curve) in CURVES.iter().zip(curves) {
         for (latency_ms, errors) in LATENCIES_MS.iter().zip(curve) {
-            let Errors { friction_rms, inversion_max } = errors;
+            let Errors { friction_rms, inversion_max, .. } = errors;
             writeln!(text, "{latency_ms},\"{name}\",{friction_rms:.3},{inversion_max:.4}").unwrap();
         }
     }
     text
+}
+
+/// The goals of `docs/inside/numbers.md`, for reports that are 10 ms late.
+fn hold_goals(curves: &[Vec<Errors>]) {
+    let late = LATENCIES_MS.iter().position(|latency_ms| *latency_ms == 10).unwrap();
+    for (stroke, goal_percent) in [("constant", 5.0), ("minimum jerk", 10.0)] {
+        let found: Vec<&Errors> = CURVES
+            .iter()
+            .zip(curves)
+            .filter(|((name, ..), _)| name.starts_with(stroke))
+            .map(|(_, curve)| &curve[late])
+            .collect();
+        let [with, without] = found[..] else { panic!("with and without prediction") };
+        assert!(with.friction_most <= goal_percent && without.friction_rms >= 3.0 * with.friction_rms, "{stroke}");
+        assert!(with.inversion_max <= 0.1 && with.inversion_max > 0.0, "{stroke}: the DAC has steps");
+    }
 }
 
 fn svg(curves: &[Vec<Errors>]) -> String {
@@ -109,6 +128,7 @@ fn svg(curves: &[Vec<Errors>]) -> String {
 #[test]
 fn the_error_over_latency_in_the_docs_is_the_one_that_is_simulated() {
     let curves = curves();
+    hold_goals(&curves);
     let files = [(path("latency.csv"), csv(&curves)), (path("latency.svg"), svg(&curves))];
     for (path, text) in files {
         golden::hold(&path, &text);
