@@ -103,3 +103,24 @@ fn what_is_there_is_not_played_again() {
     let said = folder.run("sweep plan.toml -o out").unwrap();
     assert!(said.contains("3 played, 6 were there, of 9"), "{said}");
 }
+
+/// A file that was copied over another one, or changed, is not a result.
+#[test]
+fn the_result_of_another_cell_and_a_changed_one_are_refused() {
+    let folder = Folder::new(PLAN);
+    folder.run("sweep plan.toml -o study").unwrap();
+    let cells = folder.cells("study");
+    let [one, other, ..] = &cells[..] else { panic!("{cells:?}") };
+    let text = fs::read_to_string(one).unwrap();
+    fs::copy(other, one).unwrap();
+    let error = folder.run("sweep merge study").unwrap_err();
+    assert!(error.contains("is no result of a cell (it is that of the cell "), "{error}");
+    fs::write(one, text.replacen("plate", "plain", 1)).unwrap();
+    let error = folder.run("sweep merge study").unwrap_err();
+    assert!(error.contains("its content has another hash than it says"), "{error}");
+    fs::write(one, "{").unwrap();
+    let error = folder.run("sweep merge study").unwrap_err();
+    assert!(error.contains("is no result of a cell") && error.contains("delete it"), "{error}");
+    fs::write(one, text).unwrap();
+    folder.run("sweep merge study").unwrap();
+}
