@@ -1,5 +1,4 @@
 //! The main loop of every board: the DAC's checks, the watchdog, the serial port, and what counts time.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use embedded_io::ErrorKind;
 use frixel_wire::dac_code::DacCode;

@@ -1,5 +1,4 @@
 //! The tick of every board: its frames, its deadline, and faults found outside the tick.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::Command;

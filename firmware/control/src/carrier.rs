@@ -175,6 +175,4 @@ impl Carrier {
 }
 
 #[cfg(test)]
-mod random_envelopes;
-#[cfg(test)]
 mod tests;

@@ -65,21 +65,3 @@ impl Finger {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn touch_is_stale_after_four_reports_at_most_40_ms_and_falls_from_the_third() {
-        let board = Board { tick_hz: 40_000, ..Board::SIMULATOR };
-        for (touch_report_period_s, stale_ticks) in [(5e-3, 800), (10e-3, 1_600), (20e-3, 1_600)] {
-            let limits = frixel_wire::hello::BoardLimits { touch_report_period_s, ..board.limits };
-            let stale_after = stale_after_ticks(&Board { limits, ..board });
-            assert_eq!(stale_after, stale_ticks, "{touch_report_period_s} s");
-            // The last quarter: full at its beginning, zero at its end.
-            let gain = fall_per_tick(stale_after) * (stale_ticks / 4) as f32;
-            assert!((gain - 1.0).abs() < 1e-6, "{gain}");
-        }
-    }
-}

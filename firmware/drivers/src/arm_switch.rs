@@ -73,38 +73,27 @@ const fn ticks(time_us: u32, tick_hz: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use core::convert::Infallible;
-
-    use embedded_hal::digital::ErrorType;
-
     use super::*;
+    use crate::pin::{DirectPin, ReadLevel};
 
     struct Contact(bool);
 
-    impl ErrorType for Contact {
-        type Error = Infallible;
-    }
-
-    impl InputPin for Contact {
-        fn is_high(&mut self) -> Result<bool, Infallible> {
-            Ok(self.0)
-        }
-
-        fn is_low(&mut self) -> Result<bool, Infallible> {
-            Ok(!self.0)
+    impl ReadLevel for Contact {
+        fn is_high(&self) -> bool {
+            self.0
         }
     }
 
     /// Runs for some ticks and returns whether the switch is held at the last.
-    fn run(switch: &mut ArmSwitch<Contact>, closed: bool, ticks: u32) -> bool {
-        switch.contact.0 = closed;
+    fn run(switch: &mut ArmSwitch<DirectPin<Contact>>, closed: bool, ticks: u32) -> bool {
+        switch.contact = DirectPin(Contact(closed));
         (0..ticks).map(|_| switch.is_held()).last().unwrap()
     }
 
     const TICK_HZ: u32 = 40_000;
 
-    fn released(tick_hz: u32) -> ArmSwitch<Contact> {
-        let mut switch = ArmSwitch::new(Contact(false), tick_hz);
+    fn released(tick_hz: u32) -> ArmSwitch<DirectPin<Contact>> {
+        let mut switch = ArmSwitch::new(DirectPin(Contact(false)), tick_hz);
         run(&mut switch, false, tick_hz / 100);
         switch
     }
@@ -136,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_contact_that_was_never_open_is_not_held() {
-        let mut switch = ArmSwitch::new(Contact(true), TICK_HZ);
+        let mut switch = ArmSwitch::new(DirectPin(Contact(true)), TICK_HZ);
         assert!(!run(&mut switch, true, 40_000));
         assert!(!run(&mut switch, false, 31) && !run(&mut switch, true, 40_000), "too short to be a release");
         assert!(!run(&mut switch, false, 32) && !run(&mut switch, true, 799));

@@ -48,37 +48,3 @@ impl BusHandover {
         self.granted.load(Ordering::Acquire)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Simulates ticks whose output is zero from tick number `zero_from` on; ten at most.
-    fn ticks(bus: &BusHandover, zero_from: u32) -> impl FnMut() {
-        let mut tick = 0;
-        move || {
-            let output_is_zero = tick >= zero_from;
-            assert!(
-                bus.tick_sends(output_is_zero) || output_is_zero,
-                "the main loop got the bus from a tick that drives"
-            );
-            tick += 1;
-            assert!(tick < 10, "the main loop waits in vain");
-        }
-    }
-
-    #[test]
-    fn the_tick_rests_during_the_work_only() {
-        let bus = BusHandover::new();
-        assert!(bus.tick_sends(true));
-        let rested = bus.while_frames_rest(ticks(&bus, 0), || !bus.tick_sends(true));
-        assert!(rested, "the tick sent a frame during the work");
-        assert!(bus.tick_sends(true));
-    }
-
-    #[test]
-    fn an_output_that_is_not_zero_keeps_the_bus() {
-        let bus = BusHandover::new();
-        bus.while_frames_rest(ticks(&bus, 5), || assert!(!bus.tick_sends(true)));
-    }
-}

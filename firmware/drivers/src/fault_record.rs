@@ -164,22 +164,6 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_hexadecimal() {
-        for number in [0, 0x1fff_fff8, 0xabcd_ef09, u32::MAX] {
-            let record = FaultRecord::new();
-            record.save(Fault::HardFault, 0, &mut |text| _ = text.text("at ").hex(number));
-            assert_eq!(take(&record).unwrap().2, format!("at {number:#010x}"));
-        }
-    }
-
-    #[test]
-    fn an_empty_text_is_a_text() {
-        let record = FaultRecord::new();
-        record.save(Fault::HardFault, u32::MAX, &mut |_| ());
-        assert_eq!(take(&record), Some((Fault::HardFault, u32::MAX, String::new())));
-    }
-
-    #[test]
     fn a_later_record_takes_the_place_of_an_earlier_one() {
         let record = FaultRecord::new();
         record.save(Fault::Panic, 1, &mut |text| _ = text.text("a long first text"));

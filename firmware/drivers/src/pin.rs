@@ -49,36 +49,3 @@ impl<P: SetLevel> OutputPin for DirectPin<P> {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use core::cell::Cell;
-
-    use super::*;
-
-    struct Register(Cell<bool>);
-
-    impl ReadLevel for &Register {
-        fn is_high(&self) -> bool {
-            self.0.get()
-        }
-    }
-
-    impl SetLevel for &Register {
-        fn set(&self, high: bool) {
-            self.0.set(high);
-        }
-    }
-
-    #[test]
-    fn a_pin_is_its_register() {
-        let register = Register(Cell::new(true));
-        let mut pin = DirectPin(&register);
-        assert_eq!((pin.is_high(), pin.is_low()), (Ok(true), Ok(false)));
-        assert_eq!(pin.set_low(), Ok(()));
-        assert!(!register.0.get());
-        assert_eq!((pin.is_high(), pin.is_low()), (Ok(false), Ok(true)));
-        assert_eq!(pin.set_high(), Ok(()));
-        assert!(register.0.get());
-    }
-}

@@ -1,12 +1,10 @@
 //! Scenes that need a disabled feature are refused by name, and all others play.
 
-use crate::support;
-
+use crate::support::{HEADER, TestBoard, constant, constant_scene, scene, scene_with_points};
 use frixel_layers::{BITMAP_POOL_LEN, FEATURES, Header, KIND_FEATURES, Record, Region, Waveform};
 use frixel_testkit::samples::{POINTS, sample_records};
 use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
-use support::{HEADER, TestBoard, constant, constant_scene, scene, scene_with_points};
 
 #[test]
 fn the_hello_tells_what_there_is() {

@@ -1,13 +1,10 @@
 //! Tests of the changes that a host may make while a scene plays, and of the refusals of all others.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use crate::support;
-
+use crate::support::{HEADER, TestBoard, constant, constant_scene, scene};
 use frixel_control::{Board, Drive};
 use frixel_layers::{Blend, Header, Leader, Record};
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::message::{Accepted, Command, ConfigField, Refusal};
-use support::{HEADER, TestBoard, constant, constant_scene, scene};
 
 const HALF: Command = Command::SetLayer { layer: 0, on: true, gain: 0.5 };
 
@@ -73,6 +70,15 @@ fn a_layers_number_is_of_the_scene_that_was_committed_last() {
     assert_eq!(board.session.scene_header(), Some(&HEADER));
 }
 
+#[test]
+fn a_scene_that_says_that_its_layers_stay_refuses_to_change_them() {
+    let mut board = TestBoard::new();
+    board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
+    assert_eq!(board.command(HALF), Err(Refusal::LayersFixed));
+    board.load(&constant_scene(0.01)).unwrap();
+    assert_eq!(board.command(HALF), Ok(Accepted::Done));
+}
+
 #[cfg(feature = "stream")]
 mod streams {
     use super::*;
@@ -107,23 +113,13 @@ fn the_scene_says_which_of_two_fingers_is_followed() {
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
         let mut board = TestBoard::of(board);
         board.play(&scene(&Header { leader, ..HEADER }, &[constant(0.01)]));
-        let mut seen = Vec::new();
-        for report in 0..60_u8 {
-            let x_m = 0.001 * f32::from(report);
-            board.command(Command::TouchFinger { finger: 4, x_m, y_m: 0.01, age_ticks: 0 }).unwrap();
-            if report > 20 {
-                board.command(Command::TouchFinger { finger: 9, x_m, y_m: 0.05, age_ticks: 0 }).unwrap();
-            }
-            board.ticks(200);
-            seen.push(board.status().telemetry.finger_y_m);
+        for (finger, y_m) in [(4, 0.01), (9, 0.05)] {
+            board.command(Command::TouchFinger { finger, x_m: 0.02, y_m, age_ticks: 0 }).unwrap();
+            board.ticks(10);
         }
-        let close = |found: f32, expected: f32| (found - expected).abs() < 1e-4;
-        assert!(close(seen[20], 0.01), "{leader:?}: {seen:?}");
-        let then_m = if second_leads { 0.05 } else { 0.01 };
-        assert!(
-            seen[22..].iter().all(|y_m| close(*y_m, then_m)),
-            "{leader:?}: nothing is made of the way between {seen:?}"
-        );
+        let followed_m = if second_leads { 0.05 } else { 0.01 };
+        let found_m = board.status().telemetry.finger_y_m;
+        assert!((found_m - followed_m).abs() < 1e-4, "{leader:?}: {found_m}");
         board.command(Command::LiftFinger { finger: if second_leads { 9 } else { 4 } }).unwrap();
         assert_eq!(board.tick(), Drive::default());
         assert!(board.status().telemetry.flags.contains(Flags::NO_FINGER));

@@ -1,25 +1,14 @@
 //! The queues between a session in a main loop and a ticker in an interrupt.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
-use frixel_control::{Active, Board, Order, Sense, Ticker};
-use frixel_layers::BitmapPool;
-use frixel_session::{Queues, Session, Touch};
+use crate::support::{TestBoard, leaked};
+
+use frixel_control::{Order, Sense};
+use frixel_session::{Queues, Touch};
 use frixel_wire::fault::State;
-
-fn leaked<T>(value: T) -> &'static mut T {
-    Box::leak(Box::new(value))
-}
-
-fn board() -> (Session<'static>, Ticker<'static>) {
-    let pool: &BitmapPool = leaked(BitmapPool::new());
-    let board = Board::SIMULATOR;
-    let ticker = Ticker::new(&board, pool, leaked(Active::new()));
-    (Session::new(board, pool, leaked(Active::new())), ticker)
-}
 
 #[test]
 fn orders_cross_one_by_one_and_none_is_lost_when_the_queue_is_full() {
-    let (mut session, mut ticker) = board();
+    let TestBoard { mut session, mut ticker, .. } = TestBoard::new();
     let (mut session_ends, mut tick_ends) = leaked(Queues::new()).split();
     let mut passed = 0;
     // More tracks than the queue has places, while no tick runs.
@@ -40,7 +29,7 @@ fn orders_cross_one_by_one_and_none_is_lost_when_the_queue_is_full() {
 
 #[test]
 fn a_status_is_that_of_the_first_tick_after_the_one_before_was_taken() {
-    let (_, mut ticker) = board();
+    let mut ticker = TestBoard::new().ticker;
     let (mut session_ends, mut tick_ends) = leaked(Queues::new()).split();
     assert!(session_ends.next_status().is_none());
     for taken_after in [1, 5] {

@@ -1,12 +1,11 @@
 //! The commands of a host, and the board's answers.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
-
-use crate::support;
-
+#[cfg(feature = "bitmap")]
+use crate::support::bitmap;
+use crate::support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
 use frixel_control::{Board, Order};
-use frixel_layers::{Constant, Grating, HEADER_LEN, Header, Layer, RECORD_LEN, Record, Region};
-use frixel_session::Touch;
+use frixel_layers::{Constant, HEADER_LEN, Header, Layer, RECORD_LEN, Record, Region, Scene};
+use frixel_session::{Touch, table_rows};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::{BoardLimits, feature};
@@ -17,20 +16,6 @@ use frixel_wire::payload::CHUNK_LEN;
 #[cfg(feature = "bitmap")]
 use frixel_wire::scene::bitmap_crc32;
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
-use proptest::prelude::*;
-#[cfg(feature = "bitmap")]
-use support::bitmap;
-use support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
-
-#[test]
-fn a_board_says_who_it_is_and_what_it_holds() {
-    let mut board = TestBoard::new();
-    let hello = board.hello();
-    assert_eq!((hello.tick_hz, hello.state, hello.scene_crc32), (40_000, State::Disarmed, 0));
-    let scene = constant_scene(0.01);
-    board.load(&scene).unwrap();
-    assert_eq!(board.hello().scene_crc32, crc32(&scene));
-}
 
 #[test]
 fn a_scene_is_used_whole_or_not_at_all() {
@@ -105,31 +90,17 @@ fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
     board.load(&scene(&HEADER, &[record(bitmap(bitmap_crc32(250, 250, &second)))])).unwrap();
 }
 
+/// `frixel-layers` tests the ranges of all numbers of header and records.
 #[test]
 fn numbers_that_the_board_cannot_play_are_refused_by_name() {
-    let mut board = TestBoard::connected();
-    let field = |board: &mut TestBoard, header: Header, layer| match board.load(&scene(&header, &[record(layer)])) {
-        Err(Refusal::Config(refusal)) => Some(refusal.field),
-        other => panic!("{other:?}"),
-    };
-    let fine = Layer::Constant(Constant { electric_friction_n: 0.01 });
-    for (header, expected) in [
-        (Header { finger_radius_m: f32::NAN, ..HEADER }, ConfigField::FingerRadius),
-        (Header { stiffness_pa_per_m: -1.0, ..HEADER }, ConfigField::Stiffness),
-        (Header { friction_coefficient: 0.0, ..HEADER }, ConfigField::FrictionCoefficient),
-        (Header { normal_load_n: -0.1, ..HEADER }, ConfigField::NormalLoad),
-        (Header { effective_gap_m: f32::INFINITY, ..HEADER }, ConfigField::EffectiveGap),
-        (Header { voltage_max_v_peak: 1000.0, ..HEADER }, ConfigField::VoltagePeak),
-        (Header { carrier_hz: 20_000.0, ..HEADER }, ConfigField::CarrierFrequency),
-        (Header { host_timeout_s: 5.0, ..HEADER }, ConfigField::HostTimeout),
-        (Header { carrier_hz: 5_000.0, ..HEADER }, ConfigField::CurrentRms),
+    for (header, friction_n, expected) in [
+        (Header { finger_radius_m: f32::NAN, ..HEADER }, 0.01, ConfigField::FingerRadius),
+        (Header { carrier_hz: 5_000.0, ..HEADER }, 0.01, ConfigField::CurrentRms),
+        (HEADER, f32::NAN, ConfigField::Friction),
     ] {
-        assert_eq!(field(&mut board, header, fine), Some(expected));
+        let refused = TestBoard::connected().load(&scene(&header, &[constant(friction_n)]));
+        assert!(matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == expected), "{refused:?}");
     }
-    assert_eq!(
-        field(&mut board, HEADER, Layer::Constant(Constant { electric_friction_n: f32::NAN })),
-        Some(ConfigField::Friction)
-    );
 }
 
 /// The bound for a person whom no coating protects, at each carrier frequency that the board can give: 68 kOhm allow
@@ -172,20 +143,6 @@ fn minus_zero_is_a_zero() {
     assert!(matches!(refused, Err(Refusal::Config(refusal)) if refusal.field == ConfigField::FrictionCoefficient));
 }
 
-/// A scene may state its largest friction although its layers may be changed. Larger friction after a change is
-/// clamped.
-#[test]
-fn a_largest_friction_without_fixed_layers_is_taken() {
-    let mut board = TestBoard::connected();
-    let header = Header { layers_fixed: false, electric_friction_max_n: Some(0.02), ..HEADER };
-    let layer = Layer::Constant(Constant { electric_friction_n: 0.01 });
-    assert_eq!(board.load(&scene(&header, &[record(layer)])).err(), None);
-    for command in [Command::Arm, Command::Play, Command::SetLayer { layer: 0, on: true, gain: 10.0 }] {
-        board.command(command).unwrap();
-        board.ticks(4);
-    }
-}
-
 #[test]
 fn bytes_that_are_not_a_scene_are_refused() {
     let mut board = TestBoard::connected();
@@ -209,15 +166,9 @@ fn a_scene_of_more_records_than_the_board_says_is_refused() {
     board.limits.records_max = 2;
     let mut board = TestBoard::of(board);
     board.hello();
-    let of = |count: usize| {
-        let beside = |number| {
-            let region = Region::Rectangle { x_m: 0.01 * number as f32, y_m: 0.0, width_m: 0.01, height_m: 0.1 };
-            Record { region, ..constant(0.01) }
-        };
-        scene(&HEADER, &(0..count).map(beside).collect::<Vec<_>>())
-    };
-    board.load(&of(2)).unwrap();
-    assert_eq!(board.load(&of(3)), Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 })));
+    board.load(&scene(&HEADER, &[constant(0.01); 2])).unwrap();
+    let refused = Err(Refusal::Scene(SceneError::TooManyRecords { found: 3 }));
+    assert_eq!(board.load(&scene(&HEADER, &[constant(0.01); 3])), refused);
 }
 
 /// A commit checks the records in several steps.
@@ -235,12 +186,7 @@ fn a_scene_is_refused_for_any_malformed_record() {
 }
 
 fn answered(board: &mut TestBoard) -> Vec<u16> {
-    board.collect();
-    let sequence = |message| match message {
-        FromBoard::Answer(answer) => Some(answer.sequence),
-        _ => None,
-    };
-    board.messages.drain(..).filter_map(sequence).collect()
+    board.answers().into_iter().map(|(sequence, _)| sequence).collect()
 }
 
 /// Messages that a host must be able to send at any time do not wait for an earlier commit.
@@ -485,61 +431,19 @@ fn bitmaps_of_a_scene_that_was_refused_give_way() {
     assert_eq!(board.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    /// Arbitrary bytes never reach the output, and never stop the board.
-    #[test]
-    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(
-        bytes in proptest::collection::vec(any::<u8>(), 0..2000),
-    ) {
-        let mut board = TestBoard::new();
-        board.send(&bytes);
-        board.send(&[0]);
-        board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
-        let drive = board.ticks(10);
-        prop_assert_eq!(drive, frixel_control::Drive::default());
-        prop_assert_eq!(board.hello().state, State::Disarmed);
-    }
-
-    /// A scene of arbitrary numbers is refused, or loaded with an output that stays within the limits.
-    #[test]
-    fn arbitrary_scenes_never_drive_beyond_the_limits(
-        floats in proptest::collection::vec(prop_oneof![any::<f32>(), -1.0_f32..200.0], 12),
-        layer in proptest::collection::vec(any::<f32>(), 6),
-    ) {
-        let mut board = TestBoard::connected();
-        let header = Header {
-            finger_radius_m: floats[0].abs() * 1e-3,
-            stiffness_pa_per_m: floats[1].abs() * 1e6,
-            friction_coefficient: floats[2].abs(),
-            normal_load_n: floats[3].abs() * 0.1,
-            effective_gap_m: floats[4].abs() * 1e-6,
-            voltage_max_v_rms: floats[5],
-            voltage_max_v_peak: floats[6],
-            slew_v_per_s: floats[7].abs() * 1e6,
-            carrier_hz: floats[8] * 20.0,
-            ..HEADER
-        };
-        let layer = Layer::Grating(Grating {
-            wave: frixel_layers::Wave::Sine,
-            cycles_per_m_x: layer[0],
-            cycles_per_m_y: layer[1],
-            phase_turns: layer[2],
-            trough_n: layer[3],
-            crest_n: layer[4],
-            drift_hz: 0.0,
-        });
-        if board.load(&scene(&header, &[record(layer)])).is_ok() {
-            board.command(Command::Arm).unwrap();
-            board.command(Command::Play).unwrap();
-            let code_max = (header.voltage_max_v_peak * 32_767.0 / 250.0) as i32;
-            for drive in board.slide(500) {
-                prop_assert!(i32::from(drive.dac_code.bits()).abs() <= code_max, "{drive:?}");
-            }
-            prop_assert_eq!(board.status().counters.clamped_loads, 0, "a scene that is accepted is within the ceilings");
-        }
-    }
+/// `frixel-model` tests that the rows are those of the whole table.
+#[test]
+fn a_table_ends_where_the_header_says() {
+    let of = |electric_friction_max_n| {
+        let bytes = scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]);
+        table_rows(&Scene::parse(&bytes).unwrap(), &Board::SIMULATOR).unwrap()
+    };
+    let whole = of(None);
+    assert_eq!(whole.filled, whole.whole);
+    assert_eq!(of(Some(f32::MAX)), whole, "out of reach");
+    // Four rows an octave.
+    assert_eq!(of(Some(0.02)).filled, of(Some(0.01)).filled + 4);
+    assert_eq!(of(Some(0.0)).filled, 1);
 }
 
 /// The session's orders for a command, without signs of life.
@@ -622,18 +526,9 @@ fn tick_times_are_those_that_the_tick_recorded_and_zero_where_nothing_measures()
     static METER: frixel_control::TickMeter = frixel_control::TickMeter::new(3_700);
     let mut board = TestBoard::connected();
     assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(TickTimes::default())));
-
     board.session.attach_tick_meter(&METER);
-    for cycles in [400, 2_000, 2_131, 3_701] {
-        METER.record(cycles);
-    }
+    METER.record(3_701);
     board.ticker.raise(Fault::Deadline, 3_701);
     board.tick();
-    let expected = TickTimes {
-        deadline_cycles: 3_700,
-        worst_cycles: 3_701,
-        missed_deadlines: 1,
-        histogram: [1, 0, 0, 0, 2, 0, 0, 0, 1],
-    };
-    assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(expected)));
+    assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(METER.times(1))));
 }

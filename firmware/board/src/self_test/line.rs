@@ -115,19 +115,6 @@ mod tests {
     }
 
     #[test]
-    fn all_arrives_over_a_clean_line_in_pieces_of_any_length() {
-        let (mut from, mut to) = (LineTest::new(), LineTest::new());
-        for round in 1..1000 {
-            let pending = from.pending();
-            let piece = pending[..pending.len().min(round % 37 + 1)].to_vec();
-            from.advance(piece.len());
-            to.take(&piece);
-        }
-        assert!(to.received() > 100 && from.sent() - to.received() <= 1, "{to:?}");
-        assert_eq!((to.missing(), to.damaged()), (0, 0));
-    }
-
-    #[test]
     fn text_before_the_first_block_costs_one_damaged_piece() {
         let mut side = LineTest::new();
         side.take(b"Then type: line or skip\r\n");

@@ -1,6 +1,6 @@
 //! The board whose firmware runs in virtual time.
 
-use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
+use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
 use frixel_session::Session;
 use frixel_testkit::IdealMonitor;
@@ -23,34 +23,6 @@ pub(crate) const BOARD: Board = Board {
 
 /// The limits with which bring-up begins, for 68 kOhm. [`BOARD`] drives a capacitor that cannot be touched.
 pub(crate) const BUILT_IN: BoardLimits = BoardLimits { series_resistance_ohm: 68e3, ..BOARD.limits };
-
-/// Session, ticker and supervisor of the board, whose memory lives as long as the program, and its monitor.
-pub(crate) struct Firmware {
-    pub(crate) session: Session<'static>,
-    pub(crate) ticker: Ticker<'static>,
-    pub(crate) monitor: IdealMonitor,
-}
-
-impl Firmware {
-    pub(crate) fn new() -> Self {
-        let (session, ticker) = firmware();
-        Self { session, ticker, monitor: monitor() }
-    }
-
-    /// Takes an order and runs a tick.
-    pub(crate) fn tick(&mut self, sense: &Sense) -> Drive {
-        self.session.hand_order_to(&mut self.ticker);
-        let drive = self.ticker.tick(sense);
-        self.monitor.follow(drive.dac_code);
-        drive
-    }
-
-    /// A turn of the main loop, whose host reads every answer.
-    pub(crate) fn poll(&mut self, status: &Status) {
-        self.session.poll(status);
-        while self.session.transmit(&mut [0; 64]) > 0 {}
-    }
-}
 
 /// Session and ticker, whose memory lives as long as the program.
 pub(crate) fn firmware() -> (Session<'static>, Ticker<'static>) {

@@ -1,16 +1,14 @@
 //! A board of plain values, whose tick runs when a test says so.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::cell::{Cell, RefCell};
-use std::convert::Infallible;
 use std::rc::Rc;
 
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use embedded_io::{ErrorKind, Read, ReadReady, Write, WriteReady};
+use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_board::hardware::{Dac, DacFrames, Hardware, Late, Monitor, Period, Watchdog};
 use frixel_board::start::Parts;
 use frixel_board::tick::{Tick, TickShared};
 use frixel_drivers::amplifier::KickedEnable;
+use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use frixel_testkit::IdealMonitor;
 use frixel_wire::dac_code::DacCode;
 
@@ -86,6 +84,11 @@ impl Wires {
         self.events.borrow_mut().push(event);
     }
 
+    /// The last reading of the monitor, V.
+    pub(crate) fn monitor_v(&self) -> f32 {
+        self.monitor.borrow().voltage_v()
+    }
+
     /// The events since the last call.
     pub(crate) fn take(&self) -> Vec<Event> {
         self.events.take()
@@ -127,10 +130,10 @@ impl Hardware for Fake {
     type Frames = Part;
     type Dac = Part;
     type Enable = Part;
-    type Ready = Input;
+    type Ready = DirectPin<Input>;
     type Monitor = Part;
-    type Switch = Input;
-    type Light = Part;
+    type Switch = DirectPin<Input>;
+    type Light = DirectPin<Part>;
     type Serial = Part;
     type Watchdog = Part;
 
@@ -148,10 +151,10 @@ pub(crate) fn parts(wires: &Rc<Wires>, shared: &'static TickShared) -> Parts<Fak
         frames: part(),
         dac: part(),
         enable: part(),
-        ready: Input(Rc::clone(wires), |wires| wires.ready.get()),
+        ready: DirectPin(Input(Rc::clone(wires), |wires| wires.ready.get())),
         monitor: part(),
-        switch: Input(Rc::clone(wires), |wires| wires.switch_closed.get()),
-        light: part(),
+        switch: DirectPin(Input(Rc::clone(wires), |wires| wires.switch_closed.get())),
+        light: DirectPin(part()),
         serial: Some(part()),
     }
 }
@@ -223,37 +226,19 @@ impl Watchdog for Part {
     }
 }
 
+impl SetLevel for Part {
+    fn set(&self, high: bool) {
+        self.0.light.set(high);
+    }
+}
+
+impl ReadLevel for Input {
+    fn is_high(&self) -> bool {
+        self.1(&self.0)
+    }
+}
+
 impl ErrorType for Part {
-    type Error = Infallible;
-}
-
-impl OutputPin for Part {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.light.set(false);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.light.set(true);
-        Ok(())
-    }
-}
-
-impl ErrorType for Input {
-    type Error = Infallible;
-}
-
-impl InputPin for Input {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.1(&self.0))
-    }
-
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        self.is_high().map(|is_high| !is_high)
-    }
-}
-
-impl embedded_io::ErrorType for Part {
     type Error = ErrorKind;
 }
 
@@ -266,6 +251,7 @@ impl ReadReady for Part {
 
 impl Read for Part {
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize, ErrorKind> {
+        self.0.port.get()?;
         let mut received = self.0.received.borrow_mut();
         let len = received.len().min(bytes.len());
         for (to, from) in bytes.iter_mut().zip(received.drain(..len)) {
@@ -284,6 +270,7 @@ impl WriteReady for Part {
 
 impl Write for Part {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        self.0.port.get()?;
         self.0.transmitted.borrow_mut().extend(bytes);
         Ok(bytes.len())
     }

@@ -3,5 +3,4 @@
 
 pub(crate) mod firmware;
 pub(crate) mod hardware;
-pub(crate) mod person;
 pub(crate) mod played;

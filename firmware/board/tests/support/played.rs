@@ -1,5 +1,4 @@
 //! A whole board: main loop and tick, and a host on the board that plays 10 V.
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::rc::Rc;
 

@@ -10,25 +10,23 @@ use frixel_model::{SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, To
 use frixel_wire::hello::BoardLimits;
 
 use super::{MonitorCheck, lag_step};
-use crate::{AmplifierSpec, Board, ReadyWhileDisabled, SwitchingTime};
+use crate::Board;
 
 const STEP_S: f32 = 0.2e-6;
 const STEPS_PER_US: u32 = 5;
 const TICK_STEPS: u32 = 25 * STEPS_PER_US;
 const ENABLE_STEP: u32 = 10 * STEPS_PER_US;
 const LATCH_STEP: u32 = 24 * STEPS_PER_US;
+/// Steps from an edge of the enable until the amplifier switches.
+const TURN_ON_STEPS: u32 = 900 * STEPS_PER_US;
+const TURN_OFF_STEPS: u32 = 200 * STEPS_PER_US;
 /// The latest and the earliest step of a tick in which the ADC samples the next reading.
 const SAMPLE_STEPS: [u32; 2] = [3, TICK_STEPS - 9];
 
 /// A board like the NUCLEO-G474RE's: an amplifier of 20 kHz that takes 1 ms to switch.
 const BOARD: Board = Board {
     limits: BoardLimits { full_scale_v_peak: 200.0, ..Board::SIMULATOR.limits },
-    amplifier: AmplifierSpec {
-        time_constant_s: 8e-6,
-        turn_on: SwitchingTime::from_s(1e-3),
-        turn_off: SwitchingTime::from_s(1e-3),
-        ready_while_disabled: ReadyWhileDisabled::High,
-    },
+    amplifier: Board::NUCLEO_G474RE.amplifier,
     ..Board::SIMULATOR
 };
 
@@ -59,8 +57,6 @@ struct Plant {
     gain: f32,
     /// Reading of the monitor at 0 V.
     offset_v: f32,
-    turn_on_steps: u32,
-    turn_off_steps: u32,
     sample_step: u32,
     sampled_v: f32,
     decay: Decay,
@@ -80,8 +76,6 @@ impl Plant {
         Self {
             gain: 1.0,
             offset_v: 0.0,
-            turn_on_steps: 900 * STEPS_PER_US,
-            turn_off_steps: 200 * STEPS_PER_US,
             sample_step: SAMPLE_STEPS[0],
             sampled_v: 0.0,
             lag: 1.0 - (-STEP_S / BOARD.amplifier.time_constant_s).exp(),
@@ -101,7 +95,7 @@ impl Plant {
         // 5 V/us behind a gain of 20.
         self.dac_v += (wanted_v - self.dac_v).clamp(-20.0, 20.0);
         self.since_edge_steps = self.since_edge_steps.saturating_add(1);
-        if self.since_edge_steps >= if self.enable { self.turn_on_steps } else { self.turn_off_steps } {
+        if self.since_edge_steps >= if self.enable { TURN_ON_STEPS } else { TURN_OFF_STEPS } {
             self.is_on = self.enable;
         }
         if self.is_on && self.enable {
@@ -141,9 +135,7 @@ impl Bench {
     /// A tick that outputs `code`, or nothing.
     fn tick(&mut self, code: Option<i16>) {
         self.run(0, SAMPLE_STEPS[0]);
-        let (comparison, must_count) = self.check.advance(self.code, self.plant.sampled_v);
-        let is_fault = if must_count { self.check.count(comparison) } else { self.check.sum(comparison) };
-        self.faults += u32::from(is_fault);
+        self.faults += u32::from(is_fault(&mut self.check, self.code, self.plant.sampled_v));
         self.most_wrong = self.most_wrong.max(self.check.wrong_count);
         self.check.set_enabled(code.is_some(), self.code);
         self.code = code.unwrap_or(0);
@@ -173,16 +165,30 @@ impl Bench {
     }
 
     /// A square carrier for a number of ticks.
-    fn square(&mut self, ticks: u32, amplitude: i16, half_period_ticks: u32) {
-        for tick in 0..ticks {
-            let is_positive = (tick / half_period_ticks).is_multiple_of(2);
-            self.tick(Some(if is_positive { amplitude } else { -amplitude }));
-        }
+    fn square(&mut self, ticks: u32, voltage_v: f32, half_period_ticks: u32) {
+        (0..ticks).for_each(|tick| self.tick(Some(square(voltage_v, half_period_ticks, tick))));
     }
 
     fn off(&mut self, ticks: u32) {
         (0..ticks).for_each(|_| self.tick(None));
     }
+}
+
+/// Whether a check faults in a tick in which the monitor reads `monitor_v`. The code is that of the tick before.
+fn is_fault(check: &mut MonitorCheck, driven_code: i16, monitor_v: f32) -> bool {
+    let (comparison, must_count) = check.advance(driven_code, monitor_v);
+    if must_count { check.count(comparison) } else { check.sum(comparison) }
+}
+
+/// The code of a square carrier at a tick.
+fn square(voltage_v: f32, half_period_ticks: u32, tick: u32) -> i16 {
+    code_of(if (tick / half_period_ticks).is_multiple_of(2) { voltage_v } else { -voltage_v })
+}
+
+/// The code of a sine of the same length at a tick.
+fn sine(voltage_v: f32, half_period_ticks: u32, tick: u32) -> i16 {
+    let turns = f64::from(tick) / f64::from(2 * half_period_ticks);
+    code_of(voltage_v * (core::f64::consts::TAU * turns).sin() as f32)
 }
 
 /// A code for a voltage.
@@ -211,13 +217,8 @@ fn a_healthy_amplifier_has_no_wrong_tick_at_any_carrier_and_voltage() {
         for voltage_v in [5.0, 10.7, 20.0, 50.0, 70.0, 100.0, 150.0, 200.0] {
             for half_period_ticks in [4, 5, 7, 10, 20, 160] {
                 let mut bench = Bench::new(Plant { gain, sample_step, ..Plant::new(DECAYS[0]) });
-                bench.square(640, code_of(voltage_v), half_period_ticks);
-                // A sine of the same length.
-                for tick in 0..640 {
-                    let turns = f64::from(tick) / f64::from(2 * half_period_ticks);
-                    let sine = (core::f64::consts::TAU * turns).sin() as f32;
-                    bench.tick(Some(code_of(voltage_v * sine)));
-                }
+                bench.square(640, voltage_v, half_period_ticks);
+                (0..640).for_each(|tick| bench.tick(Some(sine(voltage_v, half_period_ticks, tick))));
                 let wrong = (bench.faults, bench.most_wrong);
                 assert_eq!(wrong, (0, 0), "gain {gain}, {voltage_v} V, {half_period_ticks} ticks, {sample_step}");
             }
@@ -248,13 +249,8 @@ fn a_gain_that_is_off_by_40_percent_is_found_within_20_ms_from_10_v_peak_on() {
     let mut most = 0;
     for half_period_ticks in [4, 5, 7, 20, 40, 80, 160] {
         for (is_sine, voltage_v) in [(false, 10.0), (true, 10.0), (false, 25.0), (true, 50.0)] {
-            let driven = |tick: u32| {
-                let turns = f64::from(tick) / f64::from(2 * half_period_ticks);
-                let sine = (core::f64::consts::TAU * turns).sin() as f32;
-                let is_positive = (tick / half_period_ticks).is_multiple_of(2);
-                let square = if is_positive { 1.0 } else { -1.0 };
-                code_of(voltage_v * if is_sine { sine } else { square })
-            };
+            let carrier = if is_sine { sine } else { square };
+            let driven = |tick| carrier(voltage_v, half_period_ticks, tick);
             for (gain, from_tick) in [0.6, 1.4].into_iter().flat_map(|gain| (0..8).map(move |i| (gain, 900 + 57 * i))) {
                 let ticks = ticks_to_gain_fault(Plant::new(DECAYS[0]), gain, &driven, from_tick).unwrap_or(u32::MAX);
                 assert!(ticks <= 800, "gain {gain}, {voltage_v} V, {half_period_ticks} ticks, {is_sine}: {ticks}");
@@ -275,8 +271,7 @@ fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_s
         // A quarter, and 4 % of the full scale of 200 V.
         let gain_max = 1.25 + 8.0 / f64::from(voltage_v);
         assert!(gain_max * TOUCH_CURRENT_MAX_A_PEAK < SINGLE_FAULT_CURRENT_MAX_A_PEAK, "{voltage_v} V");
-        let driven =
-            |tick: u32| code_of(if (tick / half_period_ticks).is_multiple_of(2) { voltage_v } else { -voltage_v });
+        let driven = |tick| square(voltage_v, half_period_ticks, tick);
         for (gain, is_seen) in [(1.2, false), (1.3, true)] {
             let ticks = ticks_to_gain_fault(Plant::new(DECAYS[0]), gain, &driven, 900);
             assert_eq!(ticks.is_some(), is_seen, "gain {gain}, {voltage_v} V, {half_period_ticks} ticks: {ticks:?}");
@@ -291,12 +286,12 @@ fn an_offset_within_tolerance_is_no_gain() {
         for voltage_v in [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0] {
             for half_period_ticks in [4, 5, 7, 20, 40, 80, 160] {
                 let mut bench = Bench::new(Plant { gain, offset_v, ..Plant::new(DECAYS[0]) });
-                bench.square(4_000, code_of(voltage_v), half_period_ticks);
+                bench.square(4_000, voltage_v, half_period_ticks);
                 let context = format!("{offset_v} V, gain {gain}, {voltage_v} V, {half_period_ticks} ticks");
                 assert_eq!(bench.faults, 0, "{context}");
                 // Bursts with pauses, in which the carrier is not balanced.
                 for pause_ticks in [3, 50, 200] {
-                    bench.square(half_period_ticks / 2 + 60, code_of(voltage_v), half_period_ticks);
+                    bench.square(half_period_ticks / 2 + 60, voltage_v, half_period_ticks);
                     (0..pause_ticks).for_each(|_| bench.tick(Some(0)));
                 }
                 assert_eq!(bench.faults, 0, "{context}, in bursts");
@@ -311,8 +306,7 @@ fn an_offset_within_tolerance_is_no_gain() {
 fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_after_the_half_period() {
     for voltage_v in [20.0, 50.0, 200.0] {
         for half_period_ticks in [4, 5, 7, 10, 20, 40, 80, 160] {
-            let driven =
-                |tick: u32| code_of(if (tick / half_period_ticks).is_multiple_of(2) { voltage_v } else { -voltage_v });
+            let driven = |tick| square(voltage_v, half_period_ticks, tick);
             let ticks_to_fault = |from_tick: u32| {
                 let mut check = MonitorCheck::new(&BOARD);
                 check.set_enabled(true, 0);
@@ -321,8 +315,7 @@ fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_a
                 let found = ticks.find(|&tick| {
                     // The amplifier has switched on before.
                     let monitor_v = if tick < from_tick { check.expected_v } else { held_v };
-                    let (comparison, is_counted) = check.advance(driven(tick), monitor_v);
-                    if is_counted { check.count(comparison) } else { check.sum(comparison) }
+                    is_fault(&mut check, driven(tick), monitor_v)
                 });
                 found.map_or(u32::MAX, |tick| tick + 1 - from_tick)
             };
@@ -342,7 +335,7 @@ fn an_amplifier_that_switches_as_its_board_says_never_faults() {
                 let mut bench = Bench::new(Plant { sample_step, ..Plant::new(decay) });
                 let (mut on_ticks, mut off_ticks) = (1, 1);
                 while bench.ticks < 20_000 {
-                    bench.square(on_ticks, code_of(voltage_v), half_period_ticks);
+                    bench.square(on_ticks, voltage_v, half_period_ticks);
                     bench.off(off_ticks);
                     // All pairs of up to 89 and up to 97 ticks come, in another order.
                     (on_ticks, off_ticks) = (1 + (on_ticks + 31) % 89, 1 + (off_ticks + 40) % 97);
@@ -365,7 +358,7 @@ fn an_output_that_stays_or_is_slow_faults_when_the_turn_off_time_is_over() {
     ] {
         for voltage_v in [20.0, 50.0, 200.0] {
             let mut bench = Bench::new(Plant::new(decay));
-            bench.square(3_000, code_of(voltage_v), 20);
+            bench.square(3_000, voltage_v, 20);
             bench.off(42);
             assert_eq!(bench.faults, 0, "{decay:?}, {voltage_v} V");
             bench.off(1);
@@ -376,10 +369,7 @@ fn an_output_that_stays_or_is_slow_faults_when_the_turn_off_time_is_over() {
 
 /// Ticks until a check faults that reads `monitor_v` while `driven_v` is driven; `None` if there is none within 1,000.
 fn ticks_to_fault(check: &mut MonitorCheck, driven_v: f32, monitor_v: f32) -> Option<u32> {
-    (1..=1_000).find(|_| {
-        let (comparison, must_count) = check.advance(code_of(driven_v), monitor_v);
-        if must_count { check.count(comparison) } else { check.sum(comparison) }
-    })
+    (1..=1_000).find(|_| is_fault(check, code_of(driven_v), monitor_v))
 }
 
 #[test]
@@ -416,35 +406,6 @@ fn an_output_that_rises_after_the_enable_has_fallen_is_a_fault_at_once() {
     assert_eq!(ticks_to_fault(&mut check, 150.0, 150.0), None);
     check.set_enabled(false, code_of(150.0));
     let mut readings_v = [20.0; 9].into_iter().chain([40.0]);
-    let found = readings_v.by_ref().position(|monitor_v| {
-        let (comparison, must_count) = check.advance(0, monitor_v);
-        if must_count { check.count(comparison) } else { check.sum(comparison) }
-    });
+    let found = readings_v.by_ref().position(|monitor_v| is_fault(&mut check, 0, monitor_v));
     assert_eq!((found, readings_v.next()), (Some(9), None), "the higher one is the fault");
-}
-
-#[test]
-fn a_ready_line_means_what_its_board_says() {
-    use ReadyWhileDisabled::{DontCare, High, Low};
-    // Wrong levels while disabled, while turning on, while enabled, while turning off.
-    for (ready_while_disabled, wrong) in [
-        (High, [[true, false], [true, false], [true, false], [true, false]]),
-        (Low, [[false, true], [false, false], [true, false], [false, false]]),
-        (DontCare, [[false, false], [false, false], [true, false], [false, false]]),
-    ] {
-        let amplifier = AmplifierSpec { ready_while_disabled, ..BOARD.amplifier };
-        let mut check = MonitorCheck::new(&Board { amplifier, ..BOARD });
-        let mut found = Vec::new();
-        for (enabled, ticks) in [(false, 100), (true, 1), (true, 100), (false, 1)] {
-            for _ in 0..ticks {
-                check.set_enabled(enabled, 0);
-                let (comparison, must_count) = check.advance(0, 0.0);
-                if must_count {
-                    check.count(comparison);
-                }
-            }
-            found.push([false, true].map(|is_ready| check.is_ready_wrong(is_ready)));
-        }
-        assert_eq!(found, wrong, "{ready_while_disabled:?}");
-    }
 }

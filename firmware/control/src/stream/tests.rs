@@ -18,6 +18,13 @@ impl<'a> Ends<'a> {
         Self { intake: StreamIntake::new(buffer), player }
     }
 
+    /// Both ends, with a stream.
+    fn started(buffer: &'a StreamBuffer, sample_hz: u32, start_level: u16) -> Self {
+        let mut ends = Self::new(buffer);
+        ends.start(sample_hz, start_level);
+        ends
+    }
+
     fn start(&mut self, sample_hz: u32, start_level: u16) {
         let start = self.intake.start(sample_hz, TICK_HZ, start_level);
         self.player.start(start);
@@ -77,8 +84,7 @@ proptest! {
     #[test]
     fn a_steady_stream_is_straight_lines_between_its_samples(sample_hz in 200..=TICK_HZ, before_wrap in 0..3000_u32) {
         let buffer = buffer_before_wrap(before_wrap);
-        let mut ends = Ends::new(&buffer);
-        ends.start(sample_hz, 300);
+        let mut ends = Ends::started(&buffer, sample_hz, 300);
         let (mut sent, mut played) = (0, 0);
         while played < 4_000 {
             let (next, room) = ends.intake.progress().unwrap();
@@ -113,8 +119,7 @@ proptest! {
     ) {
         let play = |order: &[u32]| {
             let buffer = StreamBuffer::new();
-            let mut ends = Ends::new(&buffer);
-            ends.start(sample_hz, 800);
+            let mut ends = Ends::started(&buffer, sample_hz, 800);
             for frame in order {
                 ends.take(90 * frame, &samples(90 * frame, 90));
             }
@@ -171,8 +176,7 @@ proptest! {
 #[test]
 fn a_host_that_pauses_is_one_underrun_that_fades_and_goes_on_where_it_stopped() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(TICK_HZ, 500);
+    let mut ends = Ends::started(&buffer, TICK_HZ, 500);
     ends.take(0, &samples(0, 500));
     let played = ends.run(500);
     assert_eq!(played[499].weight.to_bits(), 1.0_f32.to_bits());
@@ -206,8 +210,7 @@ fn a_host_that_pauses_is_one_underrun_that_fades_and_goes_on_where_it_stopped() 
 #[test]
 fn a_gap_is_counted_once_and_time_goes_on_over_it() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(TICK_HZ, 800);
+    let mut ends = Ends::started(&buffer, TICK_HZ, 800);
     ends.take(0, &samples(0, 450));
     ends.take(540, &samples(540, 450));
     ends.run(450);
@@ -227,8 +230,7 @@ fn a_gap_is_counted_once_and_time_goes_on_over_it() {
 fn the_end_is_no_underrun_and_needs_no_start_level() {
     for count in [1, 50, 200] {
         let buffer = StreamBuffer::new();
-        let mut ends = Ends::new(&buffer);
-        ends.start(TICK_HZ, 100);
+        let mut ends = Ends::started(&buffer, TICK_HZ, 100);
         ends.take(0, &samples(0, count));
         ends.run(10);
         assert_eq!(ends.player.is_dry(), count < 100);
@@ -251,8 +253,7 @@ fn the_end_is_no_underrun_and_needs_no_start_level() {
 #[test]
 fn samples_beyond_the_buffer_or_already_played_are_dropped() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(TICK_HZ, 100);
+    let mut ends = Ends::started(&buffer, TICK_HZ, 100);
     assert_eq!(ends.intake.progress(), Some((0, 1024)));
     ends.take(0, &samples(0, 1_000));
     ends.take(1_000, &samples(1_000, 90));
@@ -271,8 +272,7 @@ fn samples_beyond_the_buffer_or_already_played_are_dropped() {
 #[test]
 fn another_stream_is_heard_from_its_first_sample_and_never_before() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(TICK_HZ, 100);
+    let mut ends = Ends::started(&buffer, TICK_HZ, 100);
     ends.take(0, &samples(0, 600));
     ends.run(500);
     ends.end();
@@ -295,8 +295,7 @@ fn another_stream_is_heard_from_its_first_sample_and_never_before() {
 #[test]
 fn a_stream_without_a_sample_is_over_when_it_ends() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(TICK_HZ, 100);
+    let mut ends = Ends::started(&buffer, TICK_HZ, 100);
     ends.run(10);
     assert!(ends.player.is_dry());
     ends.end();
@@ -308,8 +307,7 @@ fn a_stream_without_a_sample_is_over_when_it_ends() {
 fn the_last_sample_is_held_whatever_the_rate() {
     for sample_hz in [300, 7_001, 30_000, TICK_HZ] {
         let buffer = StreamBuffer::new();
-        let mut ends = Ends::new(&buffer);
-        ends.start(sample_hz, 20);
+        let mut ends = Ends::started(&buffer, sample_hz, 20);
         ends.take(0, &samples(0, 20));
         let last = f32::from(sample(19)) * VALUE_PER_SAMPLE;
         let played = ends.run(30 * TICK_HZ / sample_hz);
@@ -324,8 +322,7 @@ fn the_last_sample_is_held_whatever_the_rate() {
 fn holes_do_not_count_towards_the_start_level() {
     for before_wrap in [0, 50, 2_000] {
         let buffer = buffer_before_wrap(before_wrap);
-        let mut ends = Ends::new(&buffer);
-        ends.start(8_000, 200);
+        let mut ends = Ends::started(&buffer, 8_000, 200);
         // 180 samples of 450: two frames of five.
         ends.take(90, &samples(90, 90));
         ends.take(360, &samples(360, 90));
@@ -348,8 +345,7 @@ fn holes_do_not_count_towards_the_start_level() {
 #[test]
 fn holes_that_were_played_over_do_not_delay_the_stream_again() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(8_000, 90);
+    let mut ends = Ends::started(&buffer, 8_000, 90);
     ends.take(0, &samples(0, 90));
     ends.take(180, &samples(180, 90));
     ends.run(5 * 300);
@@ -366,8 +362,7 @@ fn holes_that_were_played_over_do_not_delay_the_stream_again() {
 #[test]
 fn a_buffer_without_room_starts_the_stream() {
     let buffer = StreamBuffer::new();
-    let mut ends = Ends::new(&buffer);
-    ends.start(8_000, 800);
+    let mut ends = Ends::started(&buffer, 8_000, 800);
     ends.take(900, &samples(900, 90));
     ends.run(1);
     assert_eq!(ends.player.phase, Phase::Playing);

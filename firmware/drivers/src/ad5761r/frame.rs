@@ -110,26 +110,4 @@ mod tests {
         let register = fields.iter().fold(0_u16, |register, (value, bits)| register << bits | value);
         assert_eq!(CONFIGURE, [0x04, (register >> 8) as u8, register as u8]);
     }
-
-    #[test]
-    fn codes_are_twos_complement_behind_the_address() {
-        let frame = |steps| output(DacCode::from_bits(steps));
-        assert_eq!(frame(0), [0x03, 0x00, 0x00]);
-        assert_eq!(frame(1), [0x03, 0x00, 0x01]);
-        assert_eq!(frame(-1), [0x03, 0xff, 0xff]);
-        assert_eq!(frame(i16::MAX), [0x03, 0x7f, 0xff]);
-        assert_eq!(frame(-i16::MAX), [0x03, 0x80, 0x01]);
-    }
-
-    #[test]
-    fn status_bits_stand_above_the_configuration() {
-        let [_, high, low] = CONFIGURE;
-        let control = Control::of_frame([0x0c, high | 0x18, low]);
-        assert!(control.is_configured() && control.has_brown_out() && control.has_short_circuit());
-        let control = Control::of_frame([0x0c, high | 0x08, low]);
-        assert!(control.is_configured() && control.has_brown_out() && !control.has_short_circuit());
-        for wrong in [[0x0c, 0, 0], [0x0c, 0xff, 0xff], [0x0c, high, low ^ 1], [0x0c, high ^ 2, low]] {
-            assert!(!Control::of_frame(wrong).is_configured(), "{wrong:02x?}");
-        }
-    }
 }

@@ -5,13 +5,6 @@ use frixel_testkit::Random;
 
 pub const PAGE_LEN: usize = 512;
 
-/// How operations end.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Operations {
-    Succeed,
-    Fail,
-}
-
 /// The flash of a board.
 #[derive(Clone)]
 pub struct SimulatedFlash {
@@ -24,7 +17,8 @@ pub struct SimulatedFlash {
     pub done: usize,
     /// Calls of `operation` for which an operation is busy.
     busy: u32,
-    pub operations: Operations,
+    /// Whether operations fail.
+    pub is_worn: bool,
     failed: bool,
     /// Whether torn words can be read.
     torn_words_read: bool,
@@ -39,7 +33,7 @@ impl SimulatedFlash {
             power_left: None,
             done: 0,
             busy: 0,
-            operations: Operations::Succeed,
+            is_worn: false,
             failed: false,
             torn_words_read,
             noise: Random::new(1),
@@ -57,18 +51,12 @@ impl SimulatedFlash {
 
     /// Performs one byte of an operation; returns `false` if power failed first.
     fn perform_byte(&mut self) -> bool {
-        match &mut self.power_left {
-            Some(0) => false,
-            Some(left) => {
-                *left -= 1;
-                self.done += 1;
-                true
-            }
-            None => {
-                self.done += 1;
-                true
-            }
+        if !self.has_power() {
+            return false;
         }
+        self.power_left = self.power_left.map(|left| left - 1);
+        self.done += 1;
+        true
     }
 }
 
@@ -87,7 +75,7 @@ impl Flash for SimulatedFlash {
 impl WritableFlash for SimulatedFlash {
     fn begin_erase(&mut self, page: u32) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed) = (3, self.operations == Operations::Fail);
+        (self.busy, self.failed) = (3, self.is_worn);
         let start = page as usize * PAGE_LEN;
         for at in start..start + PAGE_LEN {
             if !self.perform_byte() {
@@ -108,7 +96,7 @@ impl WritableFlash for SimulatedFlash {
 
     fn begin_write(&mut self, offset: u32, word: [u8; WORD_LEN]) {
         assert_eq!(self.busy, 0, "one operation at a time");
-        (self.busy, self.failed) = (2, self.operations == Operations::Fail);
+        (self.busy, self.failed) = (2, self.is_worn);
         let start = offset as usize;
         assert_eq!(start % WORD_LEN, 0);
         assert!(self.bytes[start..start + WORD_LEN].iter().all(|byte| *byte == 0xff), "{start} is not erased");

@@ -182,6 +182,16 @@ impl TestBoard {
         Some(answer)
     }
 
+    /// Takes all answers that have come, with their sequence numbers.
+    pub fn answers(&mut self) -> Vec<(u16, Result<Accepted, Refusal>)> {
+        self.collect();
+        let answer = |message| match message {
+            FromBoard::Answer(Answer { sequence, outcome, .. }) => Some((sequence, outcome)),
+            _ => None,
+        };
+        self.messages.drain(..).filter_map(answer).collect()
+    }
+
     pub fn command(&mut self, command: Command) -> Result<Accepted, Refusal> {
         self.answer(command).outcome
     }
@@ -252,7 +262,7 @@ impl TestBoard {
 }
 
 /// Memory that session and tick share for as long as the program runs, as on a board.
-fn leaked<T>(value: T) -> &'static mut T {
+pub fn leaked<T>(value: T) -> &'static mut T {
     Box::leak(Box::new(value))
 }
 
