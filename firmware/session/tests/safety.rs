@@ -300,14 +300,20 @@ fn an_amplifier_that_is_ready_only_while_enabled_can_be_armed_and_faults_when_it
     for ready_while_disabled in [ReadyWhileDisabled::Low, ReadyWhileDisabled::DontCare] {
         let amplifier = AmplifierSpec { ready_while_disabled, ..REAL_BOARD.amplifier };
         let mut board = TestBoard::of(Board { amplifier, ..REAL_BOARD });
-        // Until here the line was high, as if it were stuck.
-        let stuck = (ready_while_disabled == ReadyWhileDisabled::Low).then_some((Fault::Amplifier, 0));
-        assert_eq!(board.status().fault, stuck);
-        board.sense.amplifier_fault = true;
-        board.tick();
-        if stuck.is_some() {
-            board.command(Command::ClearFault).unwrap();
-            board.press_switch();
+        let is_low = ready_while_disabled == ReadyWhileDisabled::Low;
+        let stuck = if is_low { (State::Faulted, Some((Fault::Amplifier, 0))) } else { (State::Disarmed, None) };
+        // A line that is high as if it were stuck: from the start, and later.
+        for _ in 0..2 {
+            board.sense.amplifier_fault = false;
+            board.ticks(2);
+            let status = board.status();
+            assert_eq!((status.telemetry.state, status.fault), stuck);
+            board.sense.amplifier_fault = true;
+            board.ticks(100);
+            if is_low {
+                board.command(Command::ClearFault).unwrap();
+                board.press_switch();
+            }
         }
         board.play(&constant_scene(0.02));
         let (mut is_enabled, mut edge_tick) = (false, -40);
