@@ -11,4 +11,5 @@ mod queues;
 mod session;
 mod store;
 mod support;
+mod table_cut;
 mod touch;
