@@ -36,7 +36,7 @@ pub(crate) const WASM_TARGET: Need = Need::Target(WASM);
 pub(crate) const EMULATED: [Need; 5] = [M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator];
 
 /// All steps, in the order in which they run: a cheap one fails first.
-const STEPS: [Step; 15] = [
+const STEPS: [Step; 14] = [
     Step { name: "format", needs: &[FORMAT], run: || cargo("format", ".", &["fmt", "--all", "--check"], &[]) },
     Step { name: "lints", needs: &[CLIPPY], run: lints },
     Step { name: "features", needs: &[M4F_TARGET, CLIPPY], run: features },
@@ -46,7 +46,6 @@ const STEPS: [Step; 15] = [
     Step { name: "wasm", needs: &[WASM_TARGET, CLIPPY], run: portability::page_crates },
     Step { name: "scripts", needs: &studio_tests::SCRIPT_NEEDS, run: studio_tests::check_scripts },
     Step { name: "studio", needs: &studio_tests::NEEDS, run: studio_tests::run_page },
-    Step { name: "studio-command", needs: &studio_tests::NEEDS, run: studio_tests::run_beside_command },
     Step {
         name: "emulators",
         needs: &[M4F_TARGET, M3_TARGET, M0_PLUS_TARGET, M33_TARGET, Need::Emulator, Need::Node, Need::Npm],

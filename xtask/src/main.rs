@@ -32,8 +32,8 @@ use needs::{Need, require};
 
 const USAGE: &str = "\
 cargo xtask ci       every check beside `cargo test` that must pass before a change is merged, in steps; CI runs both
-cargo xtask ci STEP  one step: format, lints, features, images, tests, docs, wasm, scripts, studio, studio-command,
-                     emulators, budgets, python, other-systems, fuzz
+cargo xtask ci STEP  one step: format, lints, features, images, tests, docs, wasm, scripts, studio, emulators,
+                     budgets, python, other-systems, fuzz
 cargo xtask soak     the parts that take too long for that; each takes an hour at most
 cargo xtask soak PART
 cargo xtask bench    instructions and estimated cycles on emulated processors, and image sizes

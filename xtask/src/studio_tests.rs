@@ -16,8 +16,6 @@ pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, 
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
-/// The tests in which the page meets the command `frixel`. All others run without it.
-const COMMAND_TESTS: &str = "command.test.mjs";
 /// Takes the pictures of docs/design/studio.
 const SHOTS: &str = "shots.mjs";
 /// Files of tests that run at once: those on the machine's clock wait, while others compute.
@@ -35,21 +33,15 @@ pub(crate) fn check_scripts() -> Result<(), String> {
     pico_rig::check_scripts(&folder())
 }
 
-/// Builds the page, and runs the tests in it that need no command: they are not told where it is.
+/// Builds the page, and runs the tests in it.
 pub(crate) fn run_page() -> Result<(), String> {
-    let tests: Vec<String> = tests()?.into_iter().filter(|name| name != COMMAND_TESTS).collect();
-    let mut runner = runner(&[HASHES])?;
+    let tests = tests()?;
+    let mut runner = runner()?;
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
     fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
-    runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", site()?).env_remove("FRIXEL");
+    runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", site()?);
     run("studio in a browser", runner.args(tests))
-}
-
-/// Builds the page and the command, and runs the tests in which one meets the other.
-pub(crate) fn run_beside_command() -> Result<(), String> {
-    let command = ci::command()?;
-    run("studio beside the command", runner(&[])?.env("FRIXEL", command).arg(COMMAND_TESTS))
 }
 
 /// Builds the site, and opens it in Firefox.
@@ -81,10 +73,10 @@ pub(crate) fn take_shots() -> Result<(), String> {
     run("pictures of the studio", node.current_dir(&folder).arg(SHOTS).env("STUDIO_PAGE", page))
 }
 
-/// The runner of tests, with the page and the virtual board that says it is real. Builds these and further examples.
-fn runner(examples: &[&str]) -> Result<Command, String> {
+/// The runner of tests, with the page and the virtual board that says it is real. Builds these and all examples.
+fn runner() -> Result<Command, String> {
     let page = studio::build()?;
-    let names = [REAL_BOARD].iter().chain(examples).flat_map(|name| ["--example", name]);
+    let names = [REAL_BOARD, HASHES].into_iter().flat_map(|name| ["--example", name]);
     run("examples", ci::beside_default("build").args(names))?;
     let folder = folder();
     install(&folder)?;

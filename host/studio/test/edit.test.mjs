@@ -3,51 +3,34 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import { test } from "node:test";
-import { PLATES, drag, dragHandle, hold, onPage, openEditing, press, selected, textOf } from "./editing.mjs";
-import { WHOLE_SCREEN_GRATING, assertSays, give, openStudio, plays, writeScene } from "./page.mjs";
+import { PLATES, drag, hold, onPage, openEditing, press, selected, takeLayer, textOf } from "./editing.mjs";
+import { WHOLE_SCREEN_GRATING, assertSays, openStudio, plays } from "./page.mjs";
 
 const EMPTY = "version = 1\n";
 const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url).pathname;
 const panel = (page) => page.locator(".layer-panel");
 const note = (page) => panel(page).locator("[role=status]").textContent();
-/** Where the layers are, as the map shows them, and whether any two of them overlap. */
-const boxes = (page) =>
-  page.locator(".layer-box").evaluateAll((all) => all.map((each) => each.getBoundingClientRect().toJSON()));
-const overlap = (one, other) =>
-  one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
-
 test("Add puts a layer where there is room, selected, in one step of undo", async () => {
   const page = await openEditing(EMPTY);
   assert.match(await panel(page).textContent(), /^This scene has no layer yet: add one\./);
   const texts = [EMPTY];
-  for (const [name, found] of [
-    ["stripes", "stripes, grating, 30 by 28 mm"],
-    ["button", "button, 30 by 28 mm"],
-    ["noise", "noise, 30 by 28 mm"],
-    ["slider", "slider, edge, 12 by 16 mm"],
-    ["notification", "notification, vibration"],
-  ]) {
+  const places = new Set();
+  for (const name of ["stripes", "button"]) {
     await page.getByRole("button", { name: `Add ${name}`, exact: true }).click();
-    assert.ok((await selected(page)).startsWith(found), `${await selected(page)}, not ${found}`);
+    const [, place] = new RegExp(`^${name}, .*30 by 28 mm (at .*)$`).exec(await selected(page));
+    places.add(place);
     texts.push(await textOf(page));
     await plays(page);
-    await page.locator(".layer-panel .verdict").waitFor();
-    assert.equal(await page.locator(".layer-panel .verdict").textContent(), "felt", name);
   }
-  // The last one covers the screen.
-  const found = (await boxes(page)).slice(0, -1);
-  for (const [at, one] of found.entries())
-    for (const other of found.slice(at + 1)) assert.ok(!overlap(one, other), JSON.stringify([one, other]));
-  for (const [at, text] of texts.slice(1).entries()) assert.ok(text.startsWith(texts[at]), text);
+  assert.equal(places.size, 2);
   for (const text of texts.slice(0, -1).reverse()) {
     await press(page, "Control+z");
     assert.equal(await textOf(page), text);
   }
 });
 
-test("Duplicate puts a copy beside its layer, also of one in an array, and one undo takes it back", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+test("Duplicate puts a copy beside its layer, and one undo takes it back", async () => {
+  const page = await openEditing(PLATES, [20, 30]);
   await press(page, "Control+d");
   const copy = `[[layer]]
 name = "left 2"     # its name
@@ -61,32 +44,17 @@ friction_fraction = 0.5`;
   assert.equal(await selected(page), "left 2, constant, 30 by 30 mm at 15, 25");
   await press(page, "Control+z");
   assert.equal(await textOf(page), PLATES);
-  const region = "{ x_mm = 80, y_mm = 40, width_mm = 40, height_mm = 40 }";
-  const one = `{ kind = "constant", friction_fraction = 0.5, region = ${region} }`;
-  await writeScene(page, `version = 1\nlayer = [${one}]\n`);
-  await page.mouse.click(...(await onPage(page, 100, 60)));
-  await page.getByRole("button", { name: "Duplicate" }).click();
-  const moved = one.replace("x_mm = 80, y_mm = 40", "x_mm = 75, y_mm = 35");
-  assert.equal(await textOf(page), `version = 1\nlayer = [${one}, ${moved}]\n`);
-  await plays(page);
-  assert.equal(await page.locator(".layer-box").count(), 2);
 });
 
 test("a layer that is taken from the gallery while layers are edited is selected", async () => {
   const page = await openEditing();
-  await page.click("#open-gallery");
-  const card = page.locator("#gallery article", { has: page.locator('h3:text-is("constant")') });
-  await card.locator("summary").click();
-  const take = card.locator("li button").first();
-  const name = (await take.getAttribute("aria-label")).replace("Take over ", "");
-  await take.click();
-  await page.locator("#gallery >> text=Close").click();
+  const name = await takeLayer(page);
   await page.waitForFunction(() => document.querySelectorAll(".layer-box").length === 3);
   await plays(page);
   assert.ok((await selected(page)).startsWith(name), await selected(page));
 });
 
-test("a picture of one's own begins a scene and is added to one, by its aspect, in a frame that fits the screen", async () => {
+test("a picture of one's own begins a scene and is added to one, by its aspect", async () => {
   const page = await openStudio();
   const choose = async (action, name, buffer) => {
     const [chooser] = await Promise.all([page.waitForEvent("filechooser"), action()]);
@@ -107,11 +75,11 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
   assert.equal(await page.inputValue("#scene-name"), "my wood");
   await page.locator(".layer-box[aria-current=true]").waitFor();
   const [, width, height] = /^my wood, bitmap, ([\d.]+) by ([\d.]+) mm at/.exec(await selected(page));
-  const aspect = await page.evaluate(async () => {
+  const pixels = await page.evaluate(async () => {
     const image = await createImageBitmap(new Blob([await studio.bytes("scenes/textures/wood.jpg")]));
     return image.width / image.height;
   });
-  assert.ok(Math.abs(width / height / aspect - 1) < 0.01, `${width} by ${height}, ${aspect}`);
+  assert.ok(Math.abs(width / height / pixels - 1) < 0.01, `${width} by ${height}, ${pixels}`);
   await choose(() => page.click("[aria-label='Add picture']"), "my wood.jpg", wood);
   await page.locator(".layer-box").nth(1).waitFor();
   await plays(page);
@@ -121,26 +89,6 @@ test("a picture of one's own begins a scene and is added to one, by its aspect, 
   await press(page, "Control+z");
   await plays(page);
   assert.equal(await page.locator(".layer-box").count(), 1);
-  await give(page, ["wide.toml", "width_mm = 300.0\nheight_mm = 60.0\n"]);
-  await page.waitForFunction(() => studioPage.map.screen.widthMm === 300);
-  await begin("wood.jpg", wood);
-  await page.waitForFunction(() => studioPage.editor.text.includes('picture = "wood.jpg"'));
-  const [, x, y, long] = /x_mm = ([\d.]+)\ny_mm = ([\d.]+)\nwidth_mm = ([\d.]+)/.exec(await textOf(page)).map(Number);
-  assert.ok(Math.abs(x + long / 2 - 150) <= 0.5 && y >= 0 && y < 15, `${x}, ${y}, ${long}`);
-  await plays(page);
-  await page.locator(".layer-box[aria-current=true]").waitFor();
-});
-
-test("the frame of a picture without a region is where the picture is", async () => {
-  const page = await openEditing();
-  const layer = 'kind = "bitmap"\npicture = "textures/wood.jpg"\nx_mm = 15\ny_mm = 10\nwidth_mm = 90\n';
-  const text = `version = 1\n[[layer]]\n${layer}`;
-  await writeScene(page, text);
-  await page.mouse.click(...(await onPage(page, 60, 40)));
-  assert.match(await selected(page), /^bitmap, 90 by [\d.]+ mm at 15, 10$/);
-  await drag(page, [60, 40], [50, 35]);
-  assert.equal(await textOf(page), text.replace("x_mm = 15\ny_mm = 10", "x_mm = 5\ny_mm = 5"));
-  await plays(page);
 });
 
 test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async () => {
@@ -162,25 +110,17 @@ test("Ctrl+Z undoes wherever the focus is, but in a field and a dialog", async (
   assert.equal(await textOf(page), moved);
 });
 
-test("Enter goes to the numbers and Escape back to the layer; an arrow says why a layer does not move", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
-  await press(page, "Enter");
-  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "left of left, mm");
-  await press(page, "Escape", "ArrowRight");
-  assert.equal(await textOf(page), PLATES.replace("x_mm = 10.0", "x_mm = 11.0"));
-  await writeScene(page, WHOLE_SCREEN_GRATING);
-  await page.mouse.click(...(await onPage(page, 60, 40)));
+test("an arrow says why a layer does not move, until it does", async () => {
+  const page = await openEditing(WHOLE_SCREEN_GRATING, [60, 40]);
   await press(page, "ArrowRight");
   assert.match(await note(page), /covers the whole screen: drag a corner/);
-  // What was said is over once it has a place.
   await page.getByLabel("width of grating, mm").fill("60");
   await press(page, "Enter");
   assert.equal(await note(page), "");
   await plays(page);
 });
 
-test("with Shift a layer moves along one axis, and a corner keeps the ratio; with Alt it rests anywhere", async () => {
+test("with Shift a layer moves along one axis; with Alt it rests anywhere", async () => {
   const page = await openEditing();
   await page.keyboard.down("Shift");
   await drag(page, [20, 30], [32, 33]);
@@ -190,11 +130,6 @@ test("with Shift a layer moves along one axis, and a corner keeps the ratio; wit
   await drag(page, [30, 30], [28.7, 30]);
   await page.keyboard.up("Alt");
   assert.equal(await selected(page), "left, constant, 30 by 30 mm at 20.7, 20");
-  await page.keyboard.down("Shift");
-  await dragHandle(page, "se", -10, 0);
-  await page.keyboard.up("Shift");
-  const [, width, height] = /30 by 30|([\d.]+) by ([\d.]+) mm/.exec(await selected(page));
-  assert.ok(width === height && width < 21, `${width} by ${height}`);
 });
 
 test("a drag that Escape takes back, or that ends where it began, is no step of undo", async () => {
@@ -218,8 +153,7 @@ test("a drag that Escape takes back, or that ends where it began, is no step of 
 });
 
 test("layers are taken out one after the other, faster than any check", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await press(page, "Delete");
   await page.mouse.click(...(await onPage(page, 100, 50)));
   await press(page, "Delete");
@@ -231,8 +165,7 @@ test("layers are taken out one after the other, faster than any check", async ()
 });
 
 test("Delete says which layer it takes out and offers the way back, on which the layer is selected again", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const page = await openEditing(PLATES, [100, 50]);
   await press(page, "Delete");
   const notice = page.locator("#notice");
   assert.equal(await notice.locator("span").textContent(), "Removed right.");
@@ -258,8 +191,7 @@ test("Delete says which layer it takes out and offers the way back, on which the
 });
 
 test("the offer of Delete undoes nothing else, also where the text is the same again", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const page = await openEditing(PLATES, [100, 50]);
   await press(page, "Delete");
   await page.locator("#notice").getByRole("button", { name: "Undo", exact: true }).waitFor();
   const without = await textOf(page);
@@ -276,8 +208,7 @@ test("the offer of Delete undoes nothing else, also where the text is the same a
 });
 
 test("what an undo brings back is selected in the mode Edit alone", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 100, 50)));
+  const page = await openEditing(PLATES, [100, 50]);
   await press(page, "Delete");
   await plays(page);
   await page.getByRole("button", { name: "Feel", exact: true }).click();

@@ -28,11 +28,12 @@ low_fraction = 0
 high_fraction = 0.9
 `;
 
-/** Opens the scene in the page of all tests, in the mode Edit. */
-export async function openEditing(text = PLATES) {
+/** Opens the scene in the page of all tests, in the mode Edit, and selects the layer at a place of the screen, mm. */
+export async function openEditing(text = PLATES, at = undefined) {
   const page = await openScene(text);
   await page.getByRole("button", { name: "Edit", exact: true }).click();
   await settled(page);
+  if (at) await page.mouse.click(...(await onPage(page, ...at)));
   return page;
 }
 
@@ -81,6 +82,28 @@ export async function dragHandle(page, side, dx, dy) {
   await page.mouse.down();
   await page.mouse.move(x + width / 2 + right - left, y + height / 2 + bottom - top, { steps: 6 });
   await page.mouse.up();
+}
+
+/** Takes the first layer of constant.toml over from the gallery, and returns its name. */
+export async function takeLayer(page) {
+  await page.click("#open-gallery");
+  const card = page.locator("#gallery article", { has: page.locator('h3:text-is("constant")') });
+  await card.locator("summary").click();
+  const take = card.locator("li button").first();
+  await take.click();
+  await page.locator("#gallery >> text=Close").click();
+  return (await take.getAttribute("aria-label")).replace("Take over ", "");
+}
+
+/** Makes the browser's pointer a finger: `touch(type, ...points)` in CSS pixels, until `detach()`. */
+export async function touchScreen(page) {
+  const client = await page.context().newCDPSession(page);
+  await client.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  // Buttons are larger under a finger.
+  await settled(page);
+  const touch = (type, ...points) =>
+    client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x, y })) });
+  return { touch, detach: () => client.detach() };
 }
 
 export const textOf = (page) => page.evaluate(() => studioPage.editor.text);

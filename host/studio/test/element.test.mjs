@@ -2,13 +2,13 @@
 
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import http from "node:http";
 import os from "node:os";
 import path from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { assertFelt, lineOf, slideOver } from "./element.mjs";
 import { openPage, required } from "./harness.mjs";
+import { serve } from "./web_server.mjs";
 
 const SCRIPT = path.join(path.dirname(required("STUDIO_PAGE")), "frixel-scene.js");
 const GRATING = fs.readFileSync(new URL("../../../scenes/grating.toml", import.meta.url), "utf8");
@@ -25,6 +25,8 @@ function documentOf(body, files = {}) {
   return folder;
 }
 
+const urlOf = (folder) => pathToFileURL(path.join(folder, "index.html")).href;
+
 test("from a file, bundled scenes and scenes inside of the element play", async () => {
   const folder = documentOf(`
     <frixel-scene id="bundled" scene="constant"><img alt="before the script is here"></frixel-scene>
@@ -33,8 +35,7 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
     <frixel-scene id="wrong">version = 1\n[[layer]]\nkind = "gratin"</frixel-scene>
     <frixel-scene id="absent" src="other.toml"></frixel-scene>
     <frixel-scene id="empty"></frixel-scene>`);
-  const url = pathToFileURL(path.join(folder, "index.html")).href;
-  const page = await openPage(url, { isSimulated: true });
+  const page = await openPage(urlOf(folder), { isSimulated: true });
   assert.equal(await lineOf(page, "#bundled"), "constant.toml");
   assertFelt(await slideOver(page, "#bundled"));
   assert.equal(await lineOf(page, "#inside"), "scene.toml");
@@ -48,13 +49,12 @@ test("from a file, bundled scenes and scenes inside of the element play", async 
 test("what stands below a scene stays in its place when the scene comes", async () => {
   const scene = '<frixel-scene scene="constant"><img alt="before the script is here"></frixel-scene>';
   const folder = documentOf(`${scene}<h1 id="below">Below</h1>`);
-  const url = pathToFileURL(path.join(folder, "index.html")).href;
   const init = () => {
     const top = () => document.getElementById("below").getBoundingClientRect().top;
     customElements.whenDefined("frixel-scene").then(() => (globalThis.topsPx = [top()]));
     addEventListener("ready", () => topsPx.push(top()), { capture: true });
   };
-  const page = await openPage(url, { init, isSimulated: true });
+  const page = await openPage(urlOf(folder), { init, isSimulated: true });
   await page.waitForFunction(() => globalThis.topsPx?.length === 2);
   const [before, after] = await page.evaluate(() => topsPx);
   assert.ok(Math.abs(after - before) < 1, `from ${before} to ${after} px`);
@@ -110,8 +110,7 @@ function countLiving() {
 
 test("sixty replacements leave the workers, frames and observers of one element, and the last one none", async () => {
   const folder = documentOf('<div id="place"></div>');
-  const url = pathToFileURL(path.join(folder, "index.html")).href;
-  const page = await openPage(url, { init: countLiving });
+  const page = await openPage(urlOf(folder), { init: countLiving });
   await page.evaluate(() => customElements.whenDefined("frixel-scene"));
   await page.evaluate(() => replace());
   const one = await page.evaluate(() => countOf());
@@ -134,26 +133,18 @@ test("sixty replacements leave the workers, frames and observers of one element,
   assert.deepEqual(await page.evaluate(() => countOf()), one);
 });
 
-/** A server of a folder, whose documents have a content security policy. Returns the address of `index.html`. */
-async function serve(folder, context, policy) {
-  const server = http.createServer((request, answer) => {
-    const file = path.join(folder, path.normalize(new URL(request.url, "http://a").pathname));
-    const type = file.endsWith(".js") ? "text/javascript" : "text/html";
-    const heads = { "content-type": type, ...(policy && { "content-security-policy": policy }) };
-    if (fs.existsSync(file)) answer.writeHead(200, heads).end(fs.readFileSync(file));
-    // Browsers ask for an icon by themselves.
-    else answer.writeHead(file.endsWith("favicon.ico") ? 204 : 404).end();
-  });
-  context.after(() => server.close());
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  return `http://127.0.0.1:${server.address().port}/index.html`;
+/** The address of a folder's document on a server, with a content security policy if there is one. */
+async function served(folder, context, policy) {
+  const { address, end } = await serve(folder, policy && { "content-security-policy": policy });
+  context.after(end);
+  return address;
 }
 
 test("under the content security policy of docs/design a scene plays, and under less a sentence says what it needs", async (context) => {
   const text = fs.readFileSync(new URL("../../../docs/design/studio.md", import.meta.url), "utf8");
   const [policy] = text.match(/default-src .*/);
   const folder = documentOf('<frixel-scene id="there" scene="constant"></frixel-scene>');
-  const page = await openPage(await serve(folder, context, policy), { isSimulated: true });
+  const page = await openPage(await served(folder, context, policy), { isSimulated: true });
   assert.equal(await lineOf(page, "#there"), "constant.toml");
   assertFelt(await slideOver(page, "#there"));
   await page.context().close();
@@ -165,7 +156,7 @@ test("under the content security policy of docs/design a scene plays, and under 
   for (const [allowed, less] of refusals) {
     assert.ok(policy.includes(allowed), allowed);
     const refused = policy.replace(allowed, less);
-    const page = await openPage(await serve(folder, context, refused), { mayFail: true });
+    const page = await openPage(await served(folder, context, refused), { mayFail: true });
     // A function, since the policy lets no text be evaluated.
     await page.waitForFunction(() => {
       const words = document.querySelector("#there").shadowRoot?.textContent;
@@ -181,7 +172,7 @@ test("from a server, `src` names a scene with its files", async (context) => {
     "scenes/parts/wall.toml": part,
     "scenes/parts/wall.png": fs.readFileSync(new URL("../../../scenes/textures/leather.png", import.meta.url)),
   });
-  const page = await openPage(await serve(folder, context), { isSimulated: true, mayFail: true });
+  const page = await openPage(await served(folder, context), { isSimulated: true, mayFail: true });
   assert.equal(await lineOf(page, "#there"), "mine.toml");
   assertFelt(await slideOver(page, "#there"));
   await page.evaluate(() => document.querySelector("#there").setAttribute("src", "none.toml"));

@@ -24,48 +24,29 @@ test("a press on a number, and a key, say what it is", async () => {
     "Drive voltage": /\(V rms\).*adds friction, and takes none away/,
     Speed: /Speed of the simulated finger/,
   };
-  for (const [width, height] of [[1366, 657], [390, 844]]) {
-    await resize(page, [width, height]);
-    for (const [at, [title, meaning]] of Object.entries(meanings).entries()) {
-      const { x, y, width: wide } = await page.locator("#numbers div").nth(at).boundingBox();
-      await page.mouse.click(x + wide - 8, y + 30);
-      await notice.waitFor();
-      assert.match(await notice.innerText(), meaning);
-      await page.keyboard.press("Escape");
-      await page.getByRole("button", { name: title, exact: true }).press("Enter");
-      assert.match(await notice.innerText(), meaning);
-      await page.keyboard.press("Escape");
-    }
+  for (const [at, [title, meaning]] of Object.entries(meanings).entries()) {
+    const { x, y, width: wide } = await page.locator("#numbers div").nth(at).boundingBox();
+    await page.mouse.click(x + wide - 8, y + 30);
+    await notice.waitFor();
+    assert.match(await notice.innerText(), meaning);
+    await page.keyboard.press("Escape");
+    await page.getByRole("button", { name: title, exact: true }).press("Enter");
+    assert.match(await notice.innerText(), meaning);
+    await page.keyboard.press("Escape");
   }
-  await page.click("#scope-options summary");
-  const words = await page.innerText("#scope-options > div");
-  for (const word of [/reference: the friction that the scene asks for/, /felt: /, /voltage: .*V rms/, /Replay: /]) assert.match(words, word);
-  await page.keyboard.press("Escape");
-  await page.click("#open-lag");
-  const lag = await page.innerText("#lag");
-  assert.match(lag, /How far past a line the finger is when its friction comes/);
-  assert.match(lag, /– with prediction\s+– without/, "both in one unit and one word");
 });
 
-test("steps above bare glass and the largest step of a layer have names of their own, each explained in a line", async () => {
+test("a press on a verdict says what is felt, and what was unfolded below stays so", async () => {
   const page = await openScene(WHOLE_SCREEN_GRATING);
   for (const panel of ["layers", "report"]) {
     await page.click(`#tab-${panel}`);
-    const words = await page.innerText(`#panel-${panel}`);
-    assert.match(words, /Step: the largest step of friction, inside the layer or at its border, in Weber steps/);
-    assert.match(words, /A Weber step is a factor of 1\.11/);
-    assert.doesNotMatch(words, /contrast/i);
     await page.locator(`#panel-${panel} .verdict`).first().click();
     assert.match(await page.innerText("#notice span"), /^felt: .*mN/);
     await page.keyboard.press("Escape");
   }
   await page.click("text=What a board needs for it");
-  const needs = await page.innerText("#felt");
-  assert.match(needs, /targets.*the least and the most that the scene asks for anywhere/);
-  assert.match(needs, /reachable.*the map's colours end there/);
-  await writeScene(page, WHOLE_SCREEN_GRATING.replace("= 2\nlow", "= 3\nlow"));
-  assert.ok(await page.locator("#felt details").first().evaluate(({ open }) => open), "what was unfolded stays so");
   await writeScene(page, PLATE);
+  assert.ok(await page.locator("#felt details").first().evaluate(({ open }) => open));
   const cells = await page.locator("#felt tbody tr").first().locator("td").allInnerTexts();
   assert.equal(cells.length, 4, cells.join(" | "));
   assert.ok(Number(cells[2]) > 1, `${cells[2]} steps at the border of a layer of one friction`);
@@ -128,7 +109,7 @@ test("the button of the sound says what it does, stays as long as there is sound
   await hear.waitFor({ state: "hidden" });
 });
 
-test("a scene that opens has none of the curves of the one before, and friction no numbers below zero", async () => {
+test("a scene that opens has none of the curves of the one before", async () => {
   const page = await openStudio();
   await wholeStroke(page, 40);
   assert.ok(await page.evaluate(() => studioPage.samples.count > 0));
@@ -139,11 +120,6 @@ test("a scene that opens has none of the curves of the one before, and friction 
   await plays(page);
   const kept = await page.evaluate(() => studioPage.samples.since(0).xMm.filter(Number.isFinite).length);
   assert.equal(kept, 0);
-  const axis = await page.evaluate(async () => {
-    const { notBelowZero } = await import(await studio.moduleUrl("page/scope.js"));
-    return [-10, 0, 20].map(notBelowZero);
-  });
-  assert.deepEqual(axis, ["", "0", "20"]);
 });
 
 test("a slide that leaves the map selects no text, and a selection is read in light and dark", async () => {

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { openPage, pageUrl } from "./harness.mjs";
 import { give, openStudio, plays, writeScene } from "./page.mjs";
+import { pageModule } from "./page_module.mjs";
 
 const BARE_GLASS = "version = 1\n";
 
@@ -28,53 +29,36 @@ const SENSIBLE = /^(\d{1,3} mN|\d{1,2}\.\d steps|– (mN|steps)|slide to feel)$/
 
 test("press and hold, bare glass and standstill say no negative number, but slide to feel", async () => {
   const page = await openStudio();
-  const pressAndHold = async () => {
-    slide(40, 40, 30, 80);
-    await wait(1500);
-    const texts = stopWatching();
-    lift(40, 30);
-    await wait(300);
-    return texts;
+  const textsOf = async (toMm, restMs) => {
+    await page.evaluate(watchNumbers);
+    return page.evaluate(
+      async ([toMm, restMs]) => {
+        await slide(15, toMm, 30, 80);
+        await wait(restMs);
+        const texts = stopWatching();
+        lift(toMm, 30);
+        await wait(300);
+        return texts;
+      },
+      [toMm, restMs],
+    );
   };
-  await page.evaluate(watchNumbers);
-  const held = await page.evaluate(pressAndHold);
+  const held = await textsOf(15, 1500);
   assert.ok(held.includes("slide to feel"), held.join(", "));
   assert.deepEqual(held.filter((text) => !SENSIBLE.test(text)), []);
 
   await writeScene(page, BARE_GLASS);
-  const slideAndRest = async () => {
-    await slide(15, 105, 30, 80);
-    await wait(1000);
-    const texts = stopWatching();
-    lift(105, 30);
-    await wait(300);
-    return texts;
-  };
-  await page.evaluate(watchNumbers);
-  const slid = await page.evaluate(slideAndRest);
+  const slid = await textsOf(105, 1000);
   assert.ok(slid.includes("slide to feel"), "the finger rests at the end");
   assert.ok(slid.some((text) => /^\d+ mN$/.test(text)), "friction is felt on the way");
   assert.deepEqual(slid.filter((text) => !SENSIBLE.test(text)), []);
 });
 
 test("the map of a long screen has as many pixels along its longer side as any", async () => {
-  const page = await openStudio();
-  const sizes = await page.evaluate(async () => {
-    const { player } = studioPage;
-    const before = player.onMap;
-    const sizes = [];
-    player.onMap = (map, check) => {
-      sizes.push([map.widthPx, map.heightPx]);
-      before(map, check);
-    };
-    for (const [widthMm, heightMm] of [[5, 2000], [2000, 5]]) {
-      await played(`version = 1\n[screen]\nwidth_mm = ${widthMm}\nheight_mm = ${heightMm}\n`);
-      while (sizes.length === 0 || sizes.at(-1)[0] > sizes.at(-1)[1] !== widthMm > heightMm) await wait(20);
-    }
-    return sizes;
-  });
-  assert.ok(sizes.some(([widthPx, heightPx]) => widthPx < heightPx / 50), "the long screen stands");
-  for (const [widthPx, heightPx] of sizes) assert.ok(Math.max(widthPx, heightPx) <= 960, `${widthPx} x ${heightPx}`);
+  const { mapSizePx } = await pageModule("map.js");
+  assert.deepEqual(mapSizePx({ widthMm: 120, heightMm: 80 }, 960), { widthPx: 960, heightPx: 640 });
+  assert.deepEqual(mapSizePx({ widthMm: 5, heightMm: 2000 }, 960), { widthPx: 8, heightPx: 960 });
+  assert.deepEqual(mapSizePx({ widthMm: 2000, heightMm: 5 }, 960), { widthPx: 960, heightPx: 8 });
 });
 
 test("the columns stand before the engine is ready, and where they are then, also at the next visit", async () => {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { setVisibility } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, openStudio, plays, resize, showDrawer, writeScene } from "./page.mjs";
+import { compareBlind, openStudio, plays, resize, showDrawer } from "./page.mjs";
 
 /** Opens the page as a stranger does, and waits for its map, without which no ghost slides. In it, `sent` is what goes to the board as touch. */
 async function openAsStranger(options = {}) {
@@ -149,10 +149,7 @@ test("hidden, in a blind comparison and stopped, it lifts and sends nothing; it 
   await page.click("#stop");
   assert.ok((await sentIn(page, 2000)).some(({ down }) => down), "it goes on");
   await showDrawer(page);
-  await page.click("#tab-compare");
-  await page.click("text=Keep this scene as A");
-  await writeScene(page, WHOLE_SCREEN_GRATING);
-  await page.click("text=Compare A with the scene now");
+  await compareBlind(page);
   await page.evaluate(() => wait(100));
   await isLifted("blind");
 });
@@ -166,7 +163,7 @@ test("after a minute it rests, and its pictures end", async () => {
   assert.equal(await drawnInTwoSeconds(page), 0, "nothing is drawn in an idle page");
 });
 
-test("who asks for less motion sees none before a press, but the words and the sound", async () => {
+test("who asks for less motion sees none before a press, but the words and the sound, until there is a board", async () => {
   const page = await openAsStranger();
   await page.emulateMedia({ reducedMotion: "reduce" });
   await page.reload();
@@ -179,14 +176,7 @@ test("who asks for less motion sees none before a press, but the words and the s
   assert.equal(touched, 0);
   assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
   assert.ok(await page.isVisible("#hear"));
-});
-
-test("once a board is connected the words of the simulator go, also when the ghost rests, and stay away", async () => {
-  const page = await openAsStranger();
-  await page.emulateMedia({ reducedMotion: "reduce" });
-  await page.reload();
-  await plays(page);
-  assert.equal(await page.innerText("#first-hint"), "Press and slide to feel it.");
+  // Once a board is connected the words of the simulator go, and stay away.
   await page.evaluate(() => {
     const { engine } = studioPage;
     const { state } = engine;

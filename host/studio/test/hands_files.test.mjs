@@ -35,8 +35,7 @@ test("a file with Windows line ends that a scene includes is edited on the map",
 });
 
 test("what is selected stays selected where layers come and go before it, and in no other scene", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await press(page, "Delete");
   await page.locator(".layer-box").nth(1).waitFor({ state: "detached" });
   await plays(page);

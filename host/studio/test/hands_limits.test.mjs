@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { PLATES, dragHandle, holdSlider, onPage, openEditing, press, selected, textOf } from "./editing.mjs";
+import { PLATES, dragHandle, holdSlider, onPage, openEditing, press, selected, takeLayer, textOf } from "./editing.mjs";
 import { assertSays, give, openStudio, plays, resize, writeScene } from "./page.mjs";
 import { pageModule } from "./page_module.mjs";
 
@@ -18,8 +18,7 @@ repeat = { columns = 2, rows = 3, dx_mm = 30, dy_mm = 20 }
 const long = (bytes) => `version = 1\n# ${"é".repeat((bytes - 14) / 2)}`;
 
 test("with Shift a corner keeps the ratio with all copies on the screen, and follows either axis", async () => {
-  const page = await openEditing(KEY);
-  await page.mouse.click(...(await onPage(page, 15, 15)));
+  const page = await openEditing(KEY, [15, 15]);
   const boxAfter = async (...by) => {
     await page.keyboard.down("Shift");
     await dragHandle(page, "se", ...by);
@@ -36,8 +35,7 @@ test("with Shift a corner keeps the ratio with all copies on the screen, and fol
 });
 
 test("Escape takes a slider's drag back, and the slider follows no more", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   const slider = page.getByLabel("friction of left, of reach", { exact: true });
   const dragTo = await holdSlider(page, slider, 0.5, 0.8);
   assert.notEqual(await textOf(page), PLATES);
@@ -64,11 +62,7 @@ test("a layer for which the text has no room is not there, and no later one is t
   await number.fill("0.25");
   await press(page, "Enter");
   assert.equal(await textOf(page), text.replace("friction_fraction = 0.5", "friction_fraction = 0.25"));
-  await page.click("#open-gallery");
-  const card = page.locator("#gallery article", { has: page.locator('h3:text-is("constant")') });
-  await card.locator("summary").click();
-  await card.locator("li button").first().click();
-  await page.locator("#gallery >> text=Close").click();
+  await takeLayer(page);
   await plays(page);
   assert.match(await selected(page), /^left,/);
   await writeScene(page, PLATES.replace("0.9", "0.8"));
@@ -107,8 +101,7 @@ test("a text fits by its bytes, not its characters, and a picture is no text", a
 });
 
 test("Ctrl+D that is held makes one copy, and no key acts on layers behind a dialog", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await page.keyboard.down("Control");
   for (let times = 0; times < 3; times += 1) await page.keyboard.down("d");
   await page.keyboard.up("d");
@@ -132,8 +125,7 @@ test("in a scene without a layer the keys lead from the map to Add", async () =>
 });
 
 test("the verdict keeps the focus, and copies their row, while nothing of them changes", async () => {
-  const page = await openEditing(KEY.replace("x_mm = 10", "x_mm = 95").replace("columns = 2", "columns = 1"));
-  await page.mouse.click(...(await onPage(page, 100, 15)));
+  const page = await openEditing(KEY.replace("x_mm = 10", "x_mm = 95").replace("columns = 2", "columns = 1"), [100, 15]);
   assert.equal(await page.getByLabel("columns of key", { exact: true }).count(), 1);
   const button = page.locator(".layer-felt button");
   await button.focus();

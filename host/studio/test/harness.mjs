@@ -1,14 +1,12 @@
 // What the browser tests share: the page in Chromium, the bundled scenes, and a virtual board.
 //
 // `cargo xtask ci studio` builds what they need, and says in the environment where it is:
-// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), REAL_BOARD
-// (examples/real_board.rs), and for `command.test.mjs` alone FRIXEL (the command).
+// STUDIO_PAGE (the HTML file), STUDIO_HASHES (the hashes of the gallery, computed natively), and REAL_BOARD
+// (examples/real_board.rs).
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
-import os from "node:os";
-import path from "node:path";
 import readline from "node:readline";
 import { after, afterEach } from "node:test";
 import tty from "node:tty";
@@ -162,25 +160,6 @@ export async function openOnlyEngine(url, options) {
   return page;
 }
 
-/** Starts `frixel sim`; returns its terminal, the folder of its log, and `stop()`. */
-export async function startVirtualBoard() {
-  const out = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-studio-"));
-  const board = spawn(required("FRIXEL"), ["sim", "--out", out], { stdio: ["ignore", "pipe", "pipe"] });
-  const stop = endLater(() => endProgram(board, () => board.kill("SIGINT")));
-  const terminal = await new Promise((resolve, reject) => {
-    let said = "";
-    const listen = (bytes) => {
-      said += bytes;
-      const found = said.match(/\/dev\/[\w/]+/);
-      if (found) resolve(found[0]);
-    };
-    board.stdout.on("data", listen);
-    board.stderr.on("data", listen);
-    board.on("exit", () => reject(new Error(`frixel sim ended: ${said}`)));
-  });
-  return { terminal, out, stop };
-}
-
 /** A scene whose host timeout is long: a board that a command disarms is told apart from one that falls silent. */
 export const CONSTANT = `version = 1
 [drive]
@@ -272,12 +251,6 @@ export async function startRealBoard({ baud = 2_000_000 } = {}) {
 /** Hides the page, or shows it again: `value` is "hidden" or "visible". */
 export async function setVisibility(page, value) {
   await page.evaluate((value) => setVisibility(value), value);
-}
-
-/** The rows of a CSV file, as objects of texts. */
-export function rowsOf(file) {
-  const [head, ...lines] = fs.readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
-  return lines.map((cells) => Object.fromEntries(head.map((name, index) => [name, cells[index]])));
 }
 
 /**

@@ -9,23 +9,6 @@ const focusOptions = (page) => page.evaluate(() => document.querySelector("#opti
 const focusedName = (page) =>
   page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent);
 
-test("the layers are one stop of Tab, and the panel of the one that is selected comes next", async () => {
-  const page = await openEditing();
-  await focusOptions(page);
-  await press(page, "Tab");
-  assert.match(await selected(page), /^left, /);
-  await press(page, "Tab");
-  assert.match(await selected(page), /^left, /);
-  assert.equal(await focusedName(page), "Name of left");
-  await press(page, "Shift+Tab", "PageDown", "PageDown");
-  assert.match(await selected(page), /^right, /);
-  await press(page, "PageUp", "PageUp", "Enter");
-  assert.equal(await focusedName(page), "left of left, mm");
-  for (let times = 0; times < 4; times += 1) await press(page, "Tab");
-  await press(page, "ArrowRight");
-  assert.match(await textOf(page), /friction_fraction = 0\.51\n/);
-});
-
 test("a name in the tab Layers selects its layer on the map, where the keys act then, and shows its text", async () => {
   const page = await openEditing();
   const name = page.locator("#panel-layers").getByRole("button", { name: "right", exact: true });
@@ -107,8 +90,7 @@ test("Escape closes the options wherever the focus is, and so does Tab past thei
 });
 
 test("F2 leads to the name of a layer, Enter gives it, and Escape and a name that is taken leave it", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await press(page, "F2");
   await page.keyboard.type("door bell");
   await press(page, "Enter");

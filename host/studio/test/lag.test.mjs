@@ -52,6 +52,9 @@ function lagsOf({ xMm, predictedXMm, reportedXMm }) {
   return Object.fromEntries(Object.entries(lags).map(([by, all]) => [by, mean(all.map(Math.abs))]));
 }
 
+/** Most that is felt beside what the scene asks for, over the swing of that. */
+const ERROR_MAX = 0.25;
+
 /** The samples of the stroke that comes next by itself. */
 const nextStroke = (page) =>
   page.evaluate(async () => {
@@ -112,12 +115,16 @@ test("the switch slides the same stroke again without prediction, which is felt 
   assert.ok((await page.evaluate(() => heard)) > 10_000, "it is heard");
   const [late, before] = [errorOf(without), errorOf(own)];
   context.diagnostic(`felt is off by ${before.toFixed(2)} of the reference's swing with prediction, ${late.toFixed(2)} without`);
-  assert.ok(late > 1.4 * before, `${late}, ${before}`);
+  assert.ok(late > 1.4 * before && before < ERROR_MAX, `${late}, ${before}`);
   const shown = await said(page);
   assert.ok(shown.predicted < 0.6 && shown.reported > 1, `both are known of each stroke: ${JSON.stringify(shown)}`);
   const back = nextStroke(page);
   await page.locator("#prediction").check();
   assert.ok(errorOf(await back) < late / 1.4, "and with it again");
+  const faster = nextStroke(page);
+  await page.selectOption("#touch", "500");
+  await faster;
+  assert.ok((await said(page)).reported < 0.6 * shown.reported, "a faster touch source is followed more closely");
 });
 
 /** Lines of 1 mm, which reports that come every 10 ms are too rare for at 200 mm/s. */
@@ -146,20 +153,6 @@ test("lines that a board without prediction jumps over are said to be missed", a
   const [, felt, lines, missed] = /^, at (\d+) of (\d+) lines: it missed (\d+)$/.exec(words) ?? [];
   assert.ok(Number(lines) === 10 && missed >= 3 && missed <= 9 && Number(felt) === lines - missed, words);
   assert.match(await page.innerText("#lag .fine"), /A missed line is not felt/);
-});
-
-test("a faster touch source slides the same stroke again, and its bands are shorter", async () => {
-  const page = await openWide();
-  await page.click("#open-lag");
-  await wholeStroke(page, 40);
-  const [slow, slowDrawn] = [await said(page), await bands(page)];
-  const again = nextStroke(page);
-  await page.selectOption("#touch", "500");
-  await again;
-  await page.evaluate(() => wait(3000));
-  const [fast, fastDrawn] = [await said(page), await bands(page)];
-  assert.ok(fast.reported < 0.6 * slow.reported, JSON.stringify({ slow, fast }));
-  assert.ok(fastDrawn.reported < 0.8 * slowDrawn.reported, JSON.stringify({ slowDrawn, fastDrawn }));
 });
 
 /** What is played from now on, as `watched.predicts`, one for each time; `watched.replays` counts what slides by itself. */

@@ -45,10 +45,10 @@ export const SCHEMES = { brick: "light", velvet: "dark" };
 
 /** What is cut: words that are longer than their box, and tools that lie over each other or beyond their row. */
 export function cut() {
-  const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2");
+  const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2, #board");
   const seen = [...cells].filter((each) => each.checkVisibility());
   const long = seen.filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.outerHTML);
-  for (const row of document.querySelectorAll("header, .map-tools, .scope-card > .tools")) {
+  for (const row of document.querySelectorAll("header, .map-tools, .scope-card > .tools, .felt-line")) {
     const boxes = [...row.children].filter((each) => each.checkVisibility()).map((each) => [each, each.getBoundingClientRect()]);
     const inner = boxes.filter(([, { width }]) => width > 0);
     for (const [at, [tool, { left, right }]] of inner.entries()) {

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { openStudio, plays, resize, settled, showDrawer } from "./page.mjs";
+import { openStudio, plays, resize, settled } from "./page.mjs";
 
 async function openPhone(options) {
   const page = await openStudio(undefined, options);
@@ -41,26 +41,6 @@ test("the offer of sound leaves the board at a press on its cross", async () => 
   assert.ok(await page.isVisible("#hear"));
   await page.click("#first-dismiss");
   assert.ok(await page.isHidden("#hear"));
-});
-
-test("neither the state of the board nor the step of a layer is cut", async () => {
-  const page = await openPhone();
-  await page.evaluate(() => {
-    const count = document.getElementById("mistakes");
-    count.textContent = "1";
-    count.hidden = false;
-  });
-  const [shown, whole] = await page.locator("#board").evaluate((each) => [each.clientWidth, each.scrollWidth]);
-  assert.ok(whole <= shown, `${whole} of ${shown}`);
-  await showDrawer(page);
-  await settled(page);
-  const bars = page.locator("#panel-layers .felt-line .step-bar");
-  assert.ok((await bars.count()) > 0);
-  const over = await bars.evaluateAll((all) => {
-    const isOver = (bar) => bar.getBoundingClientRect().right > bar.nextElementSibling.getBoundingClientRect().left;
-    return all.filter(isOver).length;
-  });
-  assert.equal(over, 0);
 });
 
 test("a finger that is not the scene's is said at the options, also after a reload", async () => {

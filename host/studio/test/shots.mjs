@@ -4,17 +4,22 @@
 import fs from "node:fs";
 import path from "node:path";
 import { endFile, endTest, openPage } from "./harness.mjs";
+import { openBundled } from "./layout.mjs";
 import { give, openStudio } from "./page.mjs";
 
 const OUT = new URL("../../../docs/design/studio/", import.meta.url).pathname;
 const wanted = process.argv.slice(2);
 
-/** Opens the studio; `size` is that of the window. With `isFirstVisit`, text and tools are closed. */
-async function open({ size = { width: 1440, height: 900 }, scheme = "light", isFirstVisit = false } = {}) {
+/** Opens the studio, with a scene of the gallery; `size` is that of the window. At a first visit tools are closed. */
+async function open({ size = { width: 1440, height: 900 }, scheme = "light", isFirstVisit = false, scene }) {
   const page = await openStudio(undefined, { isFirstVisit });
   await page.setViewportSize(size);
   await page.emulateMedia({ colorScheme: scheme });
   await page.waitForTimeout(300);
+  if (scene) {
+    await openBundled(page, scene);
+    await page.waitForTimeout(2000);
+  }
   return page;
 }
 
@@ -32,14 +37,6 @@ async function slide(page, yMm = 44) {
   }, yMm);
 }
 
-/** Opens a bundled scene from the gallery. */
-async function bundled(page, name) {
-  await page.click("#open-gallery");
-  await page.click(`text="Open ${name}"`);
-  await page.waitForFunction((name) => document.getElementById("scene-name").value === name, name);
-  await page.waitForTimeout(2000);
-}
-
 async function change(page, before, after) {
   await page.evaluate(([before, after]) => {
     const { editor } = studioPage;
@@ -48,38 +45,25 @@ async function change(page, before, after) {
   await page.waitForTimeout(2000);
 }
 
-const shot = (page, name) => page.screenshot({ path: path.join(OUT, `${name}.png`) });
-
+/** How the studio is opened for each picture, and what leads to what it shows. */
 const SHOTS = {
-  async play() {
-    const page = await open({ isFirstVisit: true });
-    await slide(page);
-    await shot(page, "play");
-  },
-  async sound() {
-    const page = await open({ scheme: "dark" });
+  play: [{ isFirstVisit: true }, (page) => slide(page)],
+  sound: [{ scheme: "dark" }, async (page) => {
     await page.click("#tab-sound");
     await page.click("text=Sound on");
     await page.locator("#panel-sound >> text=Sound off").waitFor();
     await slide(page);
-    await shot(page, "sound");
-  },
-  async size() {
-    const page = await open();
+  }],
+  size: [{}, async (page) => {
     await page.click("summary:has-text('Options')");
     await page.click("#real-size");
     await page.waitForTimeout(300);
-    await shot(page, "size");
-  },
-  async draft() {
-    const page = await open();
-    await bundled(page, "grating");
+  }],
+  draft: [{ scene: "grating" }, async (page) => {
     await change(page, "high_n = 0.1", "high_n = 0.2");
     await slide(page);
-    await shot(page, "draft");
-  },
-  async files() {
-    const page = await open();
+  }],
+  files: [{}, async (page) => {
     const keys = `version = 1
 
 # Twelve keys.
@@ -102,68 +86,37 @@ live = true
     await page.waitForTimeout(2500);
     await page.click("#problems button");
     await page.waitForTimeout(500);
-    await shot(page, "files");
-  },
-  async mistake() {
-    const page = await open();
-    await bundled(page, "grating");
+  }],
+  mistake: [{ scene: "grating" }, async (page) => {
     await change(page, 'kind = "grating"', 'kind = "gratin"');
     await page.click("#problems button");
     await page.waitForTimeout(400);
-    await shot(page, "mistake");
-  },
-  async gallery() {
-    const page = await open({ scheme: "dark" });
+  }],
+  gallery: [{ scheme: "dark" }, async (page) => {
     await page.click("#open-gallery");
     await page.waitForTimeout(6000);
-    await shot(page, "gallery");
-  },
-  async tablet() {
-    const page = await open({ size: { width: 820, height: 1180 }, isFirstVisit: true });
-    await slide(page);
-    await shot(page, "tablet");
-  },
-  async mockup() {
-    const page = await open();
-    await bundled(page, "slider");
+  }],
+  tablet: [{ size: { width: 820, height: 1180 }, isFirstVisit: true }, (page) => slide(page)],
+  mockup: [{ scene: "slider" }, async (page) => {
     await page.click("#options summary");
     await page.selectOption("#look", "both");
     await page.keyboard.press("Escape");
     await page.waitForTimeout(500);
     await slide(page);
-    await shot(page, "mockup");
-  },
-  async compare() {
-    const page = await open();
+  }],
+  compare: [{}, async (page) => {
     await page.click("#tab-compare");
     await page.click("text=Keep this scene as A");
-    await bundled(page, "grating");
+    await openBundled(page, "grating");
+    await page.waitForTimeout(2000);
     await page.click("text=Compare A with the scene now");
     await page.waitForTimeout(800);
     await slide(page);
-    await shot(page, "compare");
-  },
-  async board() {
-    for (const [name, state] of Object.entries({
-      "board-arm": { link: "serial", state: "disarmed", needsArm: true },
-      "board-armed": { link: "serial", state: "active", needsArm: false },
-      "board-faulted": { link: "serial", state: "faulted", needsArm: false, fault: "the arm switch was released" },
-    })) {
-      const page = await open();
-      await page.evaluate((state) => {
-        const driving = "board nucleo-g474re with an electrode, up to 50 V peak";
-        const { engine } = studioPage;
-        const show = engine.onState;
-        // What the simulator reports meanwhile is not shown.
-        engine.onState = () => {};
-        show({ driving, fault: undefined, ...state });
-      }, state);
-      await page.waitForTimeout(300);
-      await page.screenshot({ path: path.join(OUT, `${name}.png`), clip: { x: 0, y: 0, width: 1440, height: 360 } });
-    }
-  },
-  async element() {
-    const page = await openPage(new URL("../../../docs/design/gallery/index.html", import.meta.url).href);
+  }],
+  "board-arm": onBoard({ state: "disarmed", needsArm: true }),
+  "board-armed": onBoard({ state: "active", needsArm: false }),
+  "board-faulted": onBoard({ state: "faulted", needsArm: false, fault: "the arm switch was released" }),
+  element: [{ url: new URL("../../../docs/design/gallery/index.html", import.meta.url).href }, async (page) => {
     await page.setViewportSize({ width: 1000, height: 900 });
     const canvas = page.locator("frixel-scene[scene=brick] #map-finger");
     await canvas.waitFor();
@@ -173,14 +126,31 @@ live = true
     await page.waitForTimeout(800);
     await page.mouse.down();
     await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.6 * box.height, { steps: 140 });
-    await page.screenshot({ path: path.join(OUT, "element.png") });
-  },
+  }],
 };
 
+/** The header of a studio whose board says that it is so. */
+function onBoard(said) {
+  const show = async (page) => {
+    await page.evaluate((said) => {
+      const driving = "board nucleo-g474re with an electrode, up to 50 V peak";
+      const { engine } = studioPage;
+      const show = engine.onState;
+      // What the simulator reports meanwhile is not shown.
+      engine.onState = () => {};
+      show({ link: "serial", driving, fault: undefined, ...said });
+    }, said);
+    await page.waitForTimeout(300);
+  };
+  return [{ clip: { x: 0, y: 0, width: 1440, height: 360 } }, show];
+}
+
 if (wanted.length === 0) for (const name of fs.readdirSync(OUT)) fs.rmSync(path.join(OUT, name));
-for (const [name, take] of Object.entries(SHOTS)) {
+for (const [name, [{ url, clip, ...how }, lead]] of Object.entries(SHOTS)) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
-  await take();
+  const page = url ? await openPage(url) : await open(how);
+  await lead(page);
+  await page.screenshot({ path: path.join(OUT, `${name}.png`), clip });
   await endTest();
 }
 await endFile();

@@ -20,27 +20,18 @@ const plays = (page) =>
 /** The site keeps all of its files. */
 const isKept = (page) => page.evaluate(async () => void (await navigator.serviceWorker.ready));
 
-test("from the second visit on, page and gallery open without the server", async (context) => {
-  const { address, end } = await serve(SITE);
+/** Opens the site of a folder, which keeps it: the page, its address, and what ends the server. */
+async function visit(context, folder = SITE) {
+  const { address, end } = await serve(folder);
   context.after(end);
   const page = await openPage(address, { isSimulated: true });
   await plays(page);
   await isKept(page);
-  end();
-  await page.goto(address);
-  await plays(page);
-  await page.goto(`${address}gallery/`);
-  // Its picture comes from beside the module.
-  assert.equal(await lineOf(page, 'frixel-scene[scene="brick"]'), "brick.toml");
-  assertFelt(await slideOver(page, 'frixel-scene[scene="brick"]'));
-});
+  return { page, address, end };
+}
 
-test("a link opens its scene, also without the server", async (context) => {
-  const { address, end } = await serve(SITE);
-  context.after(end);
-  const page = await openPage(address, { isSimulated: true });
-  await plays(page);
-  await isKept(page);
+test("from the second visit on, page, gallery and links open without the server", async (context) => {
+  const { page, address, end } = await visit(context);
   const link = await page.evaluate(async () => {
     const { linkOf } = await import(await studio.moduleUrl("page/share.js"));
     return linkOf("mine", 'version = 1\n[[layer]]\nkind = "constant"\nfriction_fraction = 0.5\n', []);
@@ -51,16 +42,16 @@ test("a link opens its scene, also without the server", async (context) => {
   await page.goto(link);
   await page.waitForFunction(() => document.getElementById("scene-name")?.value === "mine");
   await plays(page);
+  await page.goto(`${address}gallery/`);
+  // Its picture comes from beside the module.
+  assert.equal(await lineOf(page, 'frixel-scene[scene="brick"]'), "brick.toml");
+  assertFelt(await slideOver(page, 'frixel-scene[scene="brick"]'));
 });
 
 test("a newer version is offered, and takes the place of the one before once a person wants it", async (context) => {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "frixel-site-"));
   fs.cpSync(SITE, folder, { recursive: true });
-  const { address, end } = await serve(folder);
-  context.after(end);
-  const page = await openPage(address, { isSimulated: true });
-  await plays(page);
-  await isKept(page);
+  const { page, address } = await visit(context, folder);
   const cachesOf = () => page.evaluate(() => caches.keys());
   await page.evaluate(() => caches.open("of somebody else"));
   const [before] = await cachesOf();
@@ -79,11 +70,7 @@ test("a newer version is offered, and takes the place of the one before once a p
 });
 
 test("Chromium would install it", async (context) => {
-  const { address, end } = await serve(SITE);
-  context.after(end);
-  const page = await openPage(address, { isSimulated: true });
-  await plays(page);
-  await isKept(page);
+  const { page } = await visit(context);
   const devTools = await page.context().newCDPSession(page);
   const { errors, data } = await devTools.send("Page.getAppManifest");
   assert.deepEqual(errors, []);

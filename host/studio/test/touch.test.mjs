@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { onPage, openEditing, textOf } from "./editing.mjs";
+import { onPage, openEditing, textOf, touchScreen } from "./editing.mjs";
 import { plays, resize, settled } from "./page.mjs";
 
 const PHONE = [390, 844];
@@ -44,9 +44,7 @@ test("on a phone the panel gives way to the text, and a press on a layer brings 
 
 test("a swipe up that begins on a slider scrolls and changes nothing; one along it does", async () => {
   const page = await openPhone();
-  const client = await page.context().newCDPSession(page);
-  await client.send("Emulation.setTouchEmulationEnabled", { enabled: true });
-  await settled(page);
+  const { touch, detach } = await touchScreen(page);
   const panel = page.locator(".layer-panel");
   const slider = page.getByLabel("friction of left, of reach", { exact: true });
   const swipe = async (dx, dy) => {
@@ -54,11 +52,10 @@ test("a swipe up that begins on a slider scrolls and changes nothing; one along 
     await settled(page);
     const { x, y, width, height } = await slider.boundingBox();
     const [fromX, fromY] = [x + width * 0.2, y + height / 2];
-    const send = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points });
-    await send("touchStart", [{ x: fromX, y: fromY }]);
+    await touch("touchStart", [fromX, fromY]);
     for (let part = 0.1; part <= 1 && dx + dy !== 0; part += 0.1)
-      await send("touchMove", [{ x: fromX + dx * part, y: fromY + dy * part }]);
-    await send("touchEnd", []);
+      await touch("touchMove", [fromX + dx * part, fromY + dy * part]);
+    await touch("touchEnd");
   };
   const before = await textOf(page);
   const [value, top] = [await slider.inputValue(), await panel.evaluate((each) => each.scrollTop)];
@@ -70,7 +67,7 @@ test("a swipe up that begins on a slider scrolls and changes nothing; one along 
   const slid = Number(await slider.inputValue());
   assert.ok(slid > 0.2 && (await textOf(page)).includes(`friction_fraction = ${slid}\n`), `${slid}`);
   await swipe(0, 0);
-  await client.detach();
+  await detach();
   const tapped = Number(await slider.inputValue());
   assert.ok(tapped < slid && (await textOf(page)).includes(`friction_fraction = ${tapped}\n`), `${tapped}`);
   await plays(page);

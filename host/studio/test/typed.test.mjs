@@ -2,13 +2,12 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { onPage, openEditing, press, textOf } from "./editing.mjs";
+import { PLATES, onPage, openEditing, press, textOf } from "./editing.mjs";
 import { plays, settled } from "./page.mjs";
 
 /** Opens the page in the mode Edit with the left layer selected, and types a name for it. */
 async function openTypingName() {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await press(page, "F2");
   await page.keyboard.type("edge");
   return page;
@@ -56,8 +55,7 @@ function touches(page) {
 }
 
 test("a finger that scrolls the panel takes back nothing that was typed before", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   const left = page.getByLabel("left of left, mm", { exact: true });
   await left.click();
   await press(page, "Control+a");
@@ -73,8 +71,7 @@ test("a finger that scrolls the panel takes back nothing that was typed before",
 });
 
 test("a second finger elsewhere ends nothing that the first does on a slider", async () => {
-  const page = await openEditing();
-  await page.mouse.click(...(await onPage(page, 20, 30)));
+  const page = await openEditing(PLATES, [20, 30]);
   await settled(page);
   const before = await textOf(page);
   await touches(page);

@@ -13,15 +13,19 @@ const TYPES = {
   ".jpg": "image/jpeg",
 };
 
-/** Serves the files of `site` below a folder of its own, as a host of many sites does. Returns its address, and what ends it. */
-export async function serve(site) {
+/**
+ * Serves the files of `site` below a folder of its own, as a host of many sites does, with these further heads. Returns
+ * its address, and what ends it.
+ */
+export async function serve(site, heads = {}) {
   const server = http.createServer((request, answer) => {
     const { pathname } = new URL(request.url, "http://a");
     const name = decodeURIComponent(pathname.replace(/^\/mine\//, "").replace(/(^|\/)$/, "$1index.html"));
     const file = path.join(site, path.normalize(`/${name}`));
     const isThere = pathname.startsWith("/mine/") && fs.existsSync(file);
-    if (isThere) answer.writeHead(200, { "content-type": TYPES[path.extname(file)] }).end(fs.readFileSync(file));
-    else answer.writeHead(404).end();
+    if (isThere) answer.writeHead(200, { "content-type": TYPES[path.extname(file)] ?? "text/plain", ...heads }).end(fs.readFileSync(file));
+    // Browsers ask for an icon by themselves.
+    else answer.writeHead(pathname.endsWith("favicon.ico") ? 204 : 404).end();
   });
   await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
   const end = () => {

@@ -149,9 +149,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
     map.draw();
     ghost.wake();
   };
-  hands.onEdit = () => {
-    ghost.handOver();
-  };
+  hands.onEdit = () => ghost.handOver();
   hands.onPlayOnce = layers.onPlayOnce = (layer) =>
     attempt(async () => {
       const { widthMm, heightMm } = map.screen;

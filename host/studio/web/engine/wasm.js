@@ -112,12 +112,9 @@ class Engine {
     const act = this.#suspending.get(name) ?? WebAssembly.promising(this.#exports[name]);
     this.#suspending.set(name, act);
     this.#put(input);
-    let code;
-    try {
-      code = await act(...numbers);
-    } catch (trap) {
+    const code = await act(...numbers).catch((trap) => {
       throw this.#failure(trap);
-    }
+    });
     return JSON.parse(new TextDecoder().decode(this.#output(code)));
   }
 

@@ -73,6 +73,26 @@ export function download(name, content, type) {
 }
 
 /**
+ * Lets a person choose a file; resolves to undefined if none is chosen.
+ * @param {string} accept
+ * @returns {Promise<File | undefined>}
+ */
+export function chosenFile(accept) {
+  const input = element("input", { type: "file", accept, hidden: true });
+  // Firefox opens no dialog of an input that is in no document.
+  document.body.append(input);
+  return new Promise((resolve) => {
+    const choose = () => {
+      resolve(input.files?.[0]);
+      input.remove();
+    };
+    input.onchange = choose;
+    input.oncancel = choose;
+    input.click();
+  });
+}
+
+/**
  * A voltage, V rms, in words. Small ones have a decimal, so that half a volt is rounded neither to 1 nor to 0.
  * @param {number} value
  */

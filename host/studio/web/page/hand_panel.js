@@ -29,11 +29,7 @@ export function listenToPanel({ panel, boxes }, hands) {
   // The browser has taken the finger for something else.
   panel.element.addEventListener("pointercancel", () => grip.cancel());
   panel.element.addEventListener("beforeinput", takeComma);
-  panel.onNumber = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
-  panel.onChoice = ({ path }, value) => {
-    grip.change([{ path, value, decimals: 0 }]);
-    grip.end();
-  };
+  panel.onTuned = ({ path, decimals }, value) => grip.change([{ path, value, decimals }]);
   panel.name.onName = (name) => hands.rename(name);
   panel.name.onLeave = () => boxes.focus(hands.selected?.key);
   panel.onSide = (side, mm) => grip.setSide(side, mm);

@@ -283,13 +283,7 @@ export class Hands {
 
   /** Whether layers can come and go now; where not, says why. */
   canEdit() {
-    try {
-      this.#edits.assertPossible();
-      return true;
-    } catch (error) {
-      this.say(sentenceOf(error));
-      return false;
-    }
+    return this.#try(() => this.#edits.assertPossible());
   }
 
   /** @param {string} name That the selected layer is to have; the focus stays where it is. */
@@ -324,12 +318,22 @@ export class Hands {
    */
   #edit(edit, { focuses = true } = {}) {
     this.grip.end();
-    if (!this.canEdit()) return false;
-    try {
+    return this.#try(() => {
+      this.#edits.assertPossible();
       this.#selection.remember();
       const made = edit();
       this.#draw(false);
       if (focuses) this.focus(made?.key);
+    });
+  }
+
+  /**
+   * Returns whether an action succeeds; where it does not, says why.
+   * @param {() => void} act
+   */
+  #try(act) {
+    try {
+      act();
       return true;
     } catch (error) {
       this.say(sentenceOf(error));

@@ -68,10 +68,12 @@ export class HandsView {
    */
   #tuned(selected, { screen }) {
     const { toml, at, layer } = selected;
-    if (!toml || at === undefined) return { numbers: [], choices: [] };
-    const numbers = layerNumbers(this.#schema, toml, at, layer.kind, this.reach);
-    const choices = layerChoices(this.#schema, toml, at, layer.kind);
-    return { numbers: [...numbers, ...repeatNumbers(selected, screen)], choices };
+    if (!toml || at === undefined) return [];
+    return [
+      ...layerChoices(this.#schema, toml, at, layer.kind),
+      ...layerNumbers(this.#schema, toml, at, layer.kind, this.reach),
+      ...repeatNumbers(selected, screen),
+    ];
   }
 
   /** Gives the focus to a layer, or to what is around the layers. @param {string | undefined} key */

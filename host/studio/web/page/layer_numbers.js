@@ -16,8 +16,10 @@ import { layerFields } from "./completion.js";
  */
 /**
  * A word of a layer that is chosen, and the words that it may be.
- * @typedef {{ field: string, label: string, words: string, value: string, path: Path, options: string[] }} LayerChoice
+ * @typedef {{ field: string, label: string, words: string, value: string, path: Path, options: string[],
+ *   decimals: 0 }} LayerChoice
  */
+/** @typedef {LayerNumber | LayerChoice} Tuned */
 
 /** What a place is made of, which a hand drags. */
 const PLACE = ["x", "y", "height"];
@@ -131,7 +133,7 @@ export function layerChoices(schema, toml, at, kind) {
   const path = ["layer", at, "wave"];
   const options = wave.words.map(String);
   const value = String(toml.value(path) ?? toml.value(["defaults", "wave"]) ?? options[0]);
-  return [{ field: "wave", label: "wave", words: "shape of the pattern", value, path, options }];
+  return [{ field: "wave", label: "wave", words: "shape of the pattern", value, path, options, decimals: 0 }];
 }
 
 /**

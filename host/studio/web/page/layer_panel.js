@@ -10,8 +10,10 @@ import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { LayerChoice, LayerNumber, Most } from "./layer_numbers.js" */
+/** @import { Most, Tuned } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
+
+/** @typedef {{ nameLayer: (layer: string) => void, show: (about: any) => void }} Row Of numbers or of words. */
 
 /** @type {[Side, string][]} */
 const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
@@ -38,10 +40,8 @@ export class LayerPanel {
   #why = element("p", { className: "fine layer-why" });
   /** The fields of the sides of the box. */
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
-  /** The rows of the numbers, by field. */
-  #rows = /** @type {Map<string, NumberRow>} */ (new Map());
-  /** Likewise of the words that are chosen. */
-  #choices = /** @type {Map<string, ChoiceRow>} */ (new Map());
+  /** The rows of the numbers, and of the words that are chosen, by field. */
+  #rows = /** @type {Map<string, Row>} */ (new Map());
   /** Where the layer is. @type {Place | undefined} */
   #place;
   /** Why a board refuses the scene, or why the scene does not play; empty where it does. */
@@ -51,15 +51,10 @@ export class LayerPanel {
   /** For what the panel was made. */
   #madeFor = "";
   /**
-   * A number of the layer is being changed: `onNumber(number, value)`, until `onEnd()`.
-   * @type {(number: LayerNumber, value: number) => void}
+   * A number of the layer is being changed, or a word chosen: `onTuned(about, value)`, until `onEnd()`.
+   * @type {(about: Tuned, value: number | string) => void}
    */
-  onNumber = () => {};
-  /**
-   * A word of the layer is chosen.
-   * @type {(choice: LayerChoice, word: string) => void}
-   */
-  onChoice = () => {};
+  onTuned = () => {};
   /**
    * Likewise a side of its box.
    * @type {(side: Side, mm: number) => void}
@@ -108,20 +103,20 @@ export class LayerPanel {
 
   /**
    * @param {EditedLayer} edited
-   * @param {{ numbers: LayerNumber[], choices: LayerChoice[] }} tuned
+   * @param {Tuned[]} tuned
    * @param {Most} reach That the ends of the sliders are for.
    * @param {boolean} isNew Whether another layer was selected before.
    */
-  show(edited, { numbers, choices }, reach, isNew) {
+  show(edited, tuned, reach, isNew) {
     const { layer, place, at } = edited;
     this.#place = place;
     // While a layer is selected, its rows stay in their order.
-    const fields = [...numbers, ...choices].map(({ field }) => field).sort();
+    const fields = tuned.map(({ field }) => field).sort();
     const head = at === undefined ? layer.name : "";
     const madeFor = JSON.stringify([edited.key, head, layer.kind, layer.startsOn, fields, reach.naturalN, reach.reachN]);
     if (isNew) this.sayFirst(edited);
     const isOther = madeFor !== this.#madeFor;
-    if (isOther) this.#make(edited, numbers, choices);
+    if (isOther) this.#make(edited, tuned);
     this.#madeFor = madeFor;
     // A name changes in place: the next press, on a slider or a button, is under way.
     this.#nameLayer(layer, isOther);
@@ -134,8 +129,7 @@ export class LayerPanel {
       input.disabled = why !== "" || (side === "height" && place.keepsRatio);
       input.title = why;
     }
-    for (const number of numbers) this.#rows.get(number.field)?.show(number);
-    for (const choice of choices) this.#choices.get(choice.field)?.show(choice);
+    for (const about of tuned) this.#rows.get(about.field)?.show(about);
     this.#showFelt(layer, reach);
     this.element.hidden = false;
   }
@@ -149,7 +143,7 @@ export class LayerPanel {
     this.name.show(name, isOther);
     this.#kind.textContent = name === kind ? "" : kind;
     for (const [side, label] of SIDES) this.#sides.get(side)?.setAttribute("aria-label", `${label} of ${name}, mm`);
-    for (const row of [...this.#rows.values(), ...this.#choices.values()]) row.nameLayer(name);
+    for (const row of this.#rows.values()) row.nameLayer(name);
   }
 
   /**
@@ -203,13 +197,11 @@ export class LayerPanel {
 
   /**
    * @param {EditedLayer} edited
-   * @param {LayerNumber[]} numbers
-   * @param {LayerChoice[]} choices
+   * @param {Tuned[]} tuned
    */
-  #make({ layer: { name, startsOn }, at }, numbers, choices) {
+  #make({ layer: { name, startsOn }, at }, tuned) {
     this.#sides.clear();
     this.#rows.clear();
-    this.#choices.clear();
     const onclick = () => this.onClose();
     const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
     const named = at === undefined ? element("b", {}, name) : this.name.element;
@@ -221,12 +213,7 @@ export class LayerPanel {
       this.element.append(
         this.#felt,
         element("div", { className: "layer-sides" }, ...sides),
-        element(
-          "div",
-          { className: "layer-numbers" },
-          ...choices.map((choice) => this.#choice(choice, name)),
-          ...numbers.map((number) => this.#row(number, name)),
-        ),
+        element("div", { className: "layer-numbers" }, ...tuned.map((about) => this.#row(about, name))),
         this.#note,
         this.#why,
         this.#actions(startsOn),
@@ -271,25 +258,14 @@ export class LayerPanel {
   }
 
   /**
-   * @param {LayerNumber} number
+   * @param {Tuned} about
    * @param {string} layer
    */
-  #row(number, layer) {
-    const row = new NumberRow(number, layer);
-    row.onNumber = (changed, value) => this.onNumber(changed, value);
+  #row(about, layer) {
+    const row = "options" in about ? new ChoiceRow(about, layer) : new NumberRow(about, layer);
+    row.onValue = (value) => this.onTuned(about, value);
     row.onEnd = () => this.onEnd();
-    this.#rows.set(number.field, row);
-    return row.element;
-  }
-
-  /**
-   * @param {LayerChoice} choice
-   * @param {string} layer
-   */
-  #choice(choice, layer) {
-    const row = new ChoiceRow(choice, layer);
-    row.onChoice = (changed, word) => this.onChoice(changed, word);
-    this.#choices.set(choice.field, row);
+    this.#rows.set(about.field, row);
     return row.element;
   }
 

@@ -1,7 +1,7 @@
 // Mock-ups of an interface to lie under the friction map: what a person would see while they feel it.
 // @ts-check
 
-import { element } from "./dom.js";
+import { chosenFile } from "./dom.js";
 
 /**
  * A picture of one's own, once it is chosen.
@@ -11,21 +11,11 @@ let ownPicture;
 
 export const MOCKUPS = { player: "music player", keypad: "number pad", shop: "shop", own: "picture of mine…" };
 
-/**
- * Asks for a picture; resolves to whether there is one.
- * @returns {Promise<boolean>}
- */
-export function chooseOwnPicture() {
-  return new Promise((resolve) => {
-    const input = element("input", { type: "file", accept: "image/*" });
-    input.oncancel = () => resolve(ownPicture !== undefined);
-    input.onchange = async () => {
-      const file = input.files?.[0];
-      ownPicture = file && (await createImageBitmap(file).catch(() => undefined));
-      resolve(ownPicture !== undefined);
-    };
-    input.click();
-  });
+/** Asks for a picture; resolves to whether there is one. */
+export async function chooseOwnPicture() {
+  const file = await chosenFile("image/*");
+  if (file) ownPicture = await createImageBitmap(file).catch(() => undefined);
+  return ownPicture !== undefined;
 }
 
 /**

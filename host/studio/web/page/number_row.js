@@ -20,8 +20,8 @@ export class NumberRow {
   #input;
   /** @type {HTMLElement} */
   element;
-  /** The number is being changed: `onNumber(number, value)`, until `onEnd()`. */
-  onNumber = (/** @type {LayerNumber} */ _number, /** @type {number} */ _value) => {};
+  /** It is being changed: `onValue(value)`, until `onEnd()`. */
+  onValue = (/** @type {number | string} */ _value) => {};
   onEnd = () => {};
 
   /**
@@ -71,7 +71,7 @@ export class NumberRow {
     input.oninput = () => {
       const { min, max } = this.#number;
       if (input.value !== "" && input.valueAsNumber >= min && input.valueAsNumber <= max)
-        this.onNumber(this.#number, input.valueAsNumber);
+        this.onValue(input.valueAsNumber);
     };
     input.onchange = () => {
       this.onEnd();
@@ -95,7 +95,7 @@ export class NumberRow {
     const { least, most } = this.#number;
     const rounded = Number(clamp(value, least, most).toFixed(places));
     const isBeyond = rounded < least || rounded > most;
-    this.onNumber(this.#number, isBeyond ? inwards(value, this.#number) : rounded);
+    this.onValue(isBeyond ? inwards(value, this.#number) : rounded);
   }
 
   get #text() {
@@ -125,22 +125,26 @@ export class NumberRow {
 }
 
 export class ChoiceRow {
-  #choice;
+  #label;
   #select;
   /** @type {HTMLElement} */
   element;
-  /** Another word is chosen. */
-  onChoice = (/** @type {LayerChoice} */ _choice, /** @type {string} */ _word) => {};
+  /** As of a number. */
+  onValue = (/** @type {number | string} */ _value) => {};
+  onEnd = () => {};
 
   /**
    * @param {LayerChoice} choice
    * @param {string} layer
    */
   constructor(choice, layer) {
-    this.#choice = choice;
+    this.#label = choice.label;
     const options = choice.options.map((word) => element("option", { value: word }, word));
     this.#select = element("select", {}, ...options);
-    this.#select.onchange = () => this.onChoice(this.#choice, this.#select.value);
+    this.#select.onchange = () => {
+      this.onValue(this.#select.value);
+      this.onEnd();
+    };
     const said = element("span", {}, choice.label, element("small", {}, choice.words));
     this.element = element("div", { className: "layer-choice", title: choice.words }, said, this.#select);
     this.nameLayer(layer);
@@ -148,13 +152,12 @@ export class ChoiceRow {
 
   /** @param {string} layer */
   nameLayer(layer) {
-    this.#select.setAttribute("aria-label", `${this.#choice.label} of ${layer}`);
+    this.#select.setAttribute("aria-label", `${this.#label} of ${layer}`);
   }
 
   /** @param {LayerChoice} choice */
-  show(choice) {
-    this.#choice = choice;
-    this.#select.value = choice.value;
+  show({ value }) {
+    this.#select.value = value;
   }
 }
 

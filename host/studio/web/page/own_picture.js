@@ -1,7 +1,7 @@
 // A picture of one's own that a person chooses, for a layer.
 // @ts-check
 
-import { element, sentenceOf, stemOf } from "./dom.js";
+import { chosenFile, sentenceOf, stemOf } from "./dom.js";
 import { read } from "./incoming.js";
 import { pictureIn } from "./toml_text.js";
 
@@ -18,15 +18,7 @@ const PICTURE_COMMENT = "A picture: black is bare glass, white the most that the
 
 /** Lets a person choose a picture; resolves to undefined if none is chosen. */
 export async function choosePicture() {
-  const input = element("input", { type: "file", accept: "image/png,image/jpeg", hidden: true });
-  // Firefox opens no dialog of an input that is in no document.
-  document.body.append(input);
-  const file = await new Promise((/** @type {(file: File | undefined) => void} */ resolve) => {
-    input.onchange = () => resolve(input.files?.[0]);
-    input.addEventListener("cancel", () => resolve(undefined));
-    input.click();
-  });
-  input.remove();
+  const file = await chosenFile("image/png,image/jpeg");
   return file && chosen(file);
 }
 
