@@ -27,12 +27,6 @@ test("a seeded stroke over every gallery scene has the bits that it has natively
   }
 });
 
-test("the page has at most 2 MB", (context) => {
-  const { size } = fs.statSync(required("STUDIO_PAGE"));
-  context.diagnostic(`${size} bytes`);
-  assert.ok(size <= 2_000_000, `${size} bytes`);
-});
-
 /** Runs in the page: ms of board time until the board notices `silence`, and whether it drives then. */
 async function silenced(silence) {
   const silences = {

@@ -85,18 +85,6 @@ test("where nothing is driven nothing is above bare glass, and half a volt is ne
   assert.deepEqual(volts, ["0.0", "0.5", "10", "150"]);
 });
 
-test("what is said of layers is marked while the text has mistakes", async () => {
-  const page = await openStudio();
-  const marks = () =>
-    page.evaluate(() => ["felt", "panel-layers"].map((id) => getComputedStyle(document.getElementById(id), "::before").content));
-  assert.deepEqual(await marks(), ["none", "none"]);
-  await page.evaluate((text) => (studioPage.editor.text = text), WHOLE_SCREEN_GRATING.replace("grating", "gratin"));
-  await page.locator("#problems li.error").waitFor();
-  for (const mark of await marks()) assert.match(mark, /the version before/);
-  await writeScene(page, WHOLE_SCREEN_GRATING);
-  assert.deepEqual(await marks(), ["none", "none"]);
-});
-
 test("the button of the sound says what it does, stays as long as there is sound, and leaves then", async () => {
   const page = await openStudio(undefined, { isFirstVisit: true });
   const hear = page.locator("#hear");

@@ -43,8 +43,11 @@ export const overlap = (one, other) =>
 /** Scenes that the windows are looked at with, each in its colours. */
 export const SCHEMES = { brick: "light", velvet: "dark" };
 
-/** What is cut: words that are longer than their box, and tools that lie over each other or beyond their row. */
+/** What is cut, also while the text has a mistake: words longer than their box, and tools over others or beyond their row. */
 export function cut() {
+  const mistakes = document.getElementById("mistakes");
+  const shown = { hidden: mistakes.hidden, textContent: mistakes.textContent };
+  Object.assign(mistakes, { hidden: false, textContent: "1" });
   const cells = document.querySelectorAll("#numbers dd, #numbers dt, .u-legend tr, header button, .map-card h2, #board");
   const seen = [...cells].filter((each) => each.checkVisibility());
   const long = seen.filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.outerHTML);
@@ -56,6 +59,7 @@ export function cut() {
       if (right > end + 1 || left < row.getBoundingClientRect().left - 1) long.push(`not in its place: ${tool.outerHTML}`);
     }
   }
+  Object.assign(mistakes, shown);
   return long;
 }
 

@@ -70,6 +70,14 @@ test("a slow replay has a lens at the finger: contact, reports, predicted place,
   await page.evaluate(() => wait(5000));
   const drawn = await lensDrawn(page);
   assertLensDrawn(drawn, highN);
+  await page.evaluate(() => wait(1000));
+  const scale = await page.evaluate(() => studioPage.map.scale);
+  const [first, then] = [drawn, await lensDrawn(page)].map(({ arc, last: { xMm, yMm } }) => {
+    const fingers = arc.filter(([x, y]) => isNear(x, xMm[0] * scale, 3) && isNear(y, yMm[0] * scale, 3));
+    assert.ok(fingers.length > 0, `a finger at ${xMm} mm: ${JSON.stringify(arc)}`);
+    return xMm[0];
+  });
+  assert.ok(then > first + 5, `it moves on: ${first} to ${then} mm`);
   const { words, last } = drawn;
   const [xMm, contactMm, feltN, voltageV] = ["xMm", "contactRadiusMm", "feltN", "voltageV"].map((name) => last[name][0]);
   assert.ok(xMm > 30 && xMm < 90, `${xMm} mm`);

@@ -161,18 +161,6 @@ test("a serial port that nobody chose is no failure, and a browser that gives no
   assert.equal(await page.textContent("#notice span"), "The browser does not let this page use a serial port.");
 });
 
-test("a mistake is told while the text is closed, and the button leads to it", async () => {
-  const page = await openStudio(undefined, { isFirstVisit: true });
-  const broken = WHOLE_SCREEN_GRATING.replace("grating", "gratin");
-  await page.evaluate((text) => (studioPage.editor.text = text), broken);
-  await page.locator("#mistakes", { hasText: "1" }).waitFor();
-  assert.ok(await page.locator("#drawer").isHidden());
-  assert.match(await page.textContent("#check"), /1 mistake; the one before plays/);
-  assert.equal(await page.locator("#mistakes").getAttribute("aria-label"), "1 mistake");
-  await page.click("#toggle-drawer");
-  assert.ok(await page.locator("#problems li.error").isVisible());
-});
-
 test("Ctrl+S saves, wherever the focus is", async () => {
   const page = await openStudio();
   for (const focused of ["#editor .cm-content", "#map-finger"]) {

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { openStudio, plays, resize, settled } from "./page.mjs";
+import { openStudio, resize, settled } from "./page.mjs";
 
 async function openPhone(options) {
   const page = await openStudio(undefined, options);
@@ -41,31 +41,6 @@ test("the offer of sound leaves the board at a press on its cross", async () => 
   assert.ok(await page.isVisible("#hear"));
   await page.click("#first-dismiss");
   assert.ok(await page.isHidden("#hear"));
-});
-
-test("a finger that is not the scene's is said at the options, also after a reload", async () => {
-  const page = await openPhone();
-  const mark = page.locator("#options summary");
-  assert.equal(await mark.innerText(), "Options");
-  await mark.click();
-  await page.selectOption("#finger", "moist");
-  await page.keyboard.press("Escape");
-  assert.equal(await mark.innerText(), "Options: moist");
-  const { width } = await mark.boundingBox();
-  assert.ok(width < 150, `${width}`);
-  await plays(page);
-  await page.evaluate(() => (studioPage.editor.text = `${studioPage.editor.text}# mine\n`));
-  await page.waitForFunction(async () => {
-    const done = (request) => new Promise((resolve) => (request.onsuccess = () => resolve(request.result)));
-    const database = await done(indexedDB.open("frixel-studio"));
-    const works = await done(database.transaction("works").objectStore("works").getAll());
-    database.close();
-    return works.some(({ isEdited }) => isEdited);
-  });
-  await page.evaluate(() => setVisibility("hidden"));
-  await page.reload();
-  await page.waitForFunction(() => globalThis.studioPage);
-  await page.waitForFunction(() => document.querySelector("#options summary").innerText === "Options: moist");
 });
 
 test("on its side a phone shows all of the screen, also with the lag and in the mode Edit", async () => {

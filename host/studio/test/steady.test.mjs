@@ -111,39 +111,6 @@ test("a map that is older than the scene looks so until the new one is there", a
   assert.match(seen.mistaken.words, /the version before/);
 });
 
-test("a replay shows the finger on its way", async () => {
-  const page = await openStudio();
-  await page.mouse.move(5, 5);
-  await wholeStroke(page, 40);
-  const drawn = await page.evaluate(async () => {
-    await wait(4000);
-    const canvas = document.getElementById("map-finger");
-    canvas.dispatchEvent(new PointerEvent("pointerleave"));
-    canvas.blur();
-    await wait(200);
-    /** Where something is drawn, as a part of the width, or undefined. */
-    const inked = () => {
-      const { data, width } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-      const at = data.findLastIndex((value, index) => index % 4 === 3 && value > 40);
-      return at < 0 ? undefined : (Math.floor(at / 4) % width) / width;
-    };
-    const before = inked();
-    document.getElementById("replay").click();
-    const places = [];
-    // Below the trail: only the finger's circle reaches there.
-    while (document.getElementById("replay").textContent !== "Stop replay") await wait(20);
-    for (let count = 0; count < 4; count += 1) {
-      await wait(2000);
-      places.push(inked());
-    }
-    return { before, places };
-  });
-  assert.equal(drawn.before, undefined, "no finger is there before");
-  assert.ok(drawn.places.every((place) => place !== undefined), JSON.stringify(drawn));
-  for (const [at, place] of drawn.places.slice(1).entries())
-    assert.ok(place > drawn.places[at] + 0.05, `it moves on: ${JSON.stringify(drawn)}`);
-});
-
 test("the scope draws from its first sample on, and says how long ago, also after an hour", async () => {
   const page = await openStudio();
   const { isDrawn, said } = await page.evaluate(async () => {

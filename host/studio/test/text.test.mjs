@@ -7,20 +7,35 @@ import {
   writeScene,
 } from "./page.mjs";
 
-test("a mistake that is typed is said and marked, and the scene plays on once it is mended", async () => {
+/** Types a letter into the word in quotation marks at the end of a line. */
+async function typeAtEnd(page, file, line) {
+  await page.evaluate(([file, line]) => studioPage.editor.goTo(file, line), [file, line]);
+  for (const key of ["End", "ArrowLeft", "x"]) await page.keyboard.press(key);
+}
+
+test("a mistake that is typed is said and marked, also while the text is closed, and the scene before plays on", async () => {
   const page = await openScene(WHOLE_SCREEN_GRATING);
-  await page.evaluate(() => studioPage.editor.goTo(undefined, 4));
-  await page.keyboard.press("End");
-  await page.keyboard.press("ArrowLeft");
-  await page.keyboard.type("x");
+  const marks = () =>
+    page.evaluate(() => ["felt", "panel-layers"].map((id) => getComputedStyle(document.getElementById(id), "::before").content));
+  assert.deepEqual(await marks(), ["none", "none"]);
+  await typeAtEnd(page, undefined, 4);
   const shown = page.locator("#problems li.error");
   await shown.waitFor();
   assert.match(await shown.textContent(), /gratingx/);
   await page.locator(".cm-lintRange-error").waitFor();
-  assert.equal(await page.evaluate(() => document.documentElement.dataset.state), "active", "the scene before plays on");
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.state), "active");
+  for (const mark of await marks()) assert.match(mark, /the version before/);
+  await page.click("#toggle-drawer");
+  await page.locator("#mistakes", { hasText: "1" }).waitFor();
+  assert.equal(await page.locator("#mistakes").getAttribute("aria-label"), "1 mistake");
+  assert.match(await page.textContent("#check"), /1 mistake; the one before plays/);
+  await page.click("#toggle-drawer");
+  assert.ok(await shown.isVisible(), "the button leads to it");
+  await page.focus(".cm-content");
   await page.keyboard.press("Backspace");
   await plays(page);
   assert.equal(await shown.count(), 0);
+  assert.deepEqual(await marks(), ["none", "none"]);
   assert.equal(await page.evaluate(() => studioPage.editor.text), WHOLE_SCREEN_GRATING);
 });
 
@@ -36,10 +51,7 @@ test("a mistake in an included file is marked in that file", async () => {
   const page = await openIncluding();
   assert.deepEqual(await tabsOf(page), ["play.toml", "keys.toml"]);
   await page.click("#file-tabs >> text=keys.toml");
-  await page.evaluate(() => studioPage.editor.goTo("keys.toml", 5));
-  await page.keyboard.press("End");
-  await page.keyboard.press("ArrowLeft");
-  await page.keyboard.type("x");
+  await typeAtEnd(page, "keys.toml", 5);
   await page.locator(".cm-lintRange-error").waitFor();
   assert.equal(await page.locator("#problems li button").textContent(), "keys.toml, line 5");
   assert.match(await page.locator("#problems li").textContent(), /constantx/);
