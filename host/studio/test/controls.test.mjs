@@ -2,26 +2,23 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { WHOLE_SCREEN_GRATING, openScene, openStudio, writeScene } from "./page.mjs";
-
-const live = (name) =>
-  WHOLE_SCREEN_GRATING.replace('kind = "grating"', `name = "${name}"\nkind = "grating"\nlive = true`);
+import { liveGrating, openScene, openStudio, writeScene } from "./page.mjs";
 
 test("the gains that are shown are those of the scene that plays, also where one has the focus", async () => {
-  const page = await openScene(live("ridges"));
+  const page = await openScene(liveGrating("ridges"));
   await page.click("#tab-layers");
   const gain = page.getByLabel("gain of ridges, as a number");
   await gain.focus();
-  await writeScene(page, live("ridges").replace("live = true", "live = true\ngain = 0.5"));
+  await writeScene(page, liveGrating("ridges").replace("live = true", "live = true\ngain = 0.5"));
   assert.equal(await gain.inputValue(), "0.5");
   assert.ok(await gain.evaluate((input) => input === document.activeElement), "the focus stays");
-  await writeScene(page, live("waves"));
+  await writeScene(page, liveGrating("waves"));
   assert.equal(await gain.count(), 0);
   assert.equal(await page.getByLabel("gain of waves, as a number").count(), 1);
 });
 
 test("a gain is not sent while another scene is on its way", async () => {
-  const page = await openScene(live("ridges"));
+  const page = await openScene(liveGrating("ridges"));
   const sent = await page.evaluate((text) => {
     const { editor, engine } = studioPage;
     const lines = [];
@@ -29,7 +26,7 @@ test("a gain is not sent while another scene is on its way", async () => {
     editor.text = text;
     document.querySelector("#panel-layers input[type=checkbox]").click();
     return lines;
-  }, live("waves"));
+  }, liveGrating("waves"));
   assert.deepEqual(sent, []);
   await page.getByLabel("waves on").waitFor({ state: "attached" });
 });

@@ -63,18 +63,20 @@ test("what stands below a scene stays in its place when the scene comes", async 
 /** Runs in the page before its scripts: counts what lives on outside of elements. */
 function countLiving() {
   globalThis.living = { workers: new Set(), frames: new Set(), observers: new Set() };
-  const { terminate } = Worker.prototype;
-  const Counted = Worker;
-  globalThis.Worker = class extends Counted {
-    constructor(...given) {
-      super(...given);
-      living.workers.add(this);
-    }
-    terminate() {
-      living.workers.delete(this);
-      terminate.call(this);
-    }
-  };
+  const ends = [["Worker", "workers", "terminate"], ["ResizeObserver", "observers", "disconnect"], ["IntersectionObserver", "observers", "disconnect"]];
+  for (const [name, kind, end] of ends) {
+    const Native = globalThis[name];
+    globalThis[name] = class extends Native {
+      constructor(...given) {
+        super(...given);
+        living[kind].add(this);
+      }
+      [end]() {
+        living[kind].delete(this);
+        super[end]();
+      }
+    };
+  }
   const request = requestAnimationFrame;
   globalThis.requestAnimationFrame = (act) => {
     const frame = (ms) => {
@@ -84,19 +86,6 @@ function countLiving() {
     living.frames.add(frame);
     return request(frame);
   };
-  for (const name of ["ResizeObserver", "IntersectionObserver"]) {
-    const Native = globalThis[name];
-    globalThis[name] = class extends Native {
-      observe(...given) {
-        living.observers.add(this);
-        super.observe(...given);
-      }
-      disconnect() {
-        living.observers.delete(this);
-        super.disconnect();
-      }
-    };
-  }
   globalThis.countOf = () => Object.fromEntries(Object.entries(living).map(([name, all]) => [name, all.size]));
   /** Replaces what stands in the document by a scene, and waits until it is shown. */
   globalThis.replace = async () => {

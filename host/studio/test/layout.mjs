@@ -43,7 +43,7 @@ export const overlap = (one, other) =>
 /** Scenes that the windows are looked at with, each in its colours. */
 export const SCHEMES = { brick: "light", velvet: "dark" };
 
-/** What is cut, also while the text has a mistake: words longer than their box, and tools over others or beyond their row. */
+/** What is cut, also with a mistake in the text: words longer than their box, and tools over others. */
 export function cut() {
   const mistakes = document.getElementById("mistakes");
   const shown = { hidden: mistakes.hidden, textContent: mistakes.textContent };

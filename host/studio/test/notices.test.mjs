@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { test } from "node:test";
 import { boxes } from "./layout.mjs";
-import { WHOLE_SCREEN_GRATING, give, openScene, openStudio, plays, resize } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, give, liveGrating, openScene, openStudio, plays, resize } from "./page.mjs";
 
 const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url);
 /** Distance at which a notice stands beside its control at most, CSS pixels. */
@@ -190,8 +190,7 @@ test("names are cut at 64 characters", async () => {
 });
 
 test("the slider of a gain ends where the drive does, and is never refused", async () => {
-  const strong = WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "ridges"\nkind = "grating"\nlive = true');
-  const page = await openScene(strong);
+  const page = await openScene(liveGrating("ridges"));
   const slider = page.getByLabel("gain of ridges", { exact: true });
   const most = Number(await slider.getAttribute("max"));
   assert.ok(most > 1 && most < 2, `the grating of 0.1 N takes a gain of ${most}`);

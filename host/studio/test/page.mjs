@@ -189,6 +189,10 @@ low_n = 0.0
 high_n = 0.1
 `;
 
+/** The same with a name, a switch and a gain. */
+export const liveGrating = (name) =>
+  WHOLE_SCREEN_GRATING.replace('kind = "grating"', `name = "${name}"\nkind = "grating"\nlive = true`);
+
 export const KEYS = `version = 1
 
 [[ layer ]]

@@ -4,10 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { deflateRawSync } from "node:zlib";
 import { pageUrl } from "./harness.mjs";
-import { WHOLE_SCREEN_GRATING, compareBlind, openScene, openStudio, plays, resize, wholeStroke, writeScene } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, compareBlind, liveGrating, openScene, openStudio, plays, resize, wholeStroke, writeScene } from "./page.mjs";
 import { pageModule } from "./page_module.mjs";
-
-const LIVE = WHOLE_SCREEN_GRATING.replace('kind = "grating"', 'name = "ridges"\nkind = "grating"\nlive = true');
 
 test("a reload brings back the scene, its name and its finger", async () => {
   const page = await openStudio();
@@ -267,7 +265,7 @@ test("a press on the map ends a replay and is felt", async () => {
 });
 
 test("layer and map say that a switch or a gain differs from the scene", async () => {
-  const page = await openScene(LIVE);
+  const page = await openScene(liveGrating("ridges"));
   const note = page.locator("#map-note");
   assert.ok(await note.isHidden());
   await page.getByLabel("ridges on").uncheck();
