@@ -212,12 +212,4 @@ mod tests {
         let expected = format!("{full} KiB of flash with everything, {grating} KiB with one grating");
         assert!(read("README.md").unwrap().contains(&expected), "README.md does not state: {expected}");
     }
-
-    #[test]
-    fn digits_are_grouped_by_three() {
-        assert_eq!(
-            [0, 15, 999, 1_000, 42_064, 1_234_567].map(grouped),
-            ["0", "15", "999", "1,000", "42,064", "1,234,567"]
-        );
-    }
 }

@@ -266,16 +266,3 @@ fn resistances_are_those_of_the_limits() {
         assert!(pull_down.value.unwrap() <= 8.2e3 && pull_down.tolerance.unwrap() <= 0.01, "{name}");
     }
 }
-
-#[test]
-fn values_are_said_in_their_unit() {
-    for (name, value, said) in [
-        ("R1", 34e3, "34 kOhm"),
-        ("R3", 10e6, "10 MOhm"),
-        ("R14", 2.2e3, "2.2 kOhm"),
-        ("C1", 10e-9, "10 nF"),
-        ("C3", 0.1e-6, "0.1 uF"),
-    ] {
-        assert_eq!(value_text(Unit::of(name), value), said);
-    }
-}
