@@ -4,20 +4,27 @@ use super::*;
 
 const SPEED_M_PER_S: f64 = 0.1;
 
+/// A driven finger at a constant speed.
+fn sample(reference_n: f64, felt_n: f64) -> FidelitySample {
+    FidelitySample {
+        speed_m_per_s: Some(SPEED_M_PER_S),
+        reference_n,
+        felt_n,
+        natural_n: 0.3,
+        is_driven: true,
+        ..FidelitySample::default()
+    }
+}
+
+/// The score of two seconds; `at` makes a sample from the time.
+fn scored_of(at: impl Fn(f64) -> FidelitySample) -> Fidelity {
+    let samples: Vec<_> = (0..8000).map(|number| at(f64::from(number) / SAMPLE_HZ)).collect();
+    Fidelity::of(&samples).unwrap()
+}
+
 /// A finger over a grating of 10 Hz and 20 mN; `felt_n` makes the felt friction from the time.
 fn scored(felt_n: impl Fn(f64) -> f64) -> Fidelity {
-    let sample = |number: u32| {
-        let t_s = f64::from(number) / SAMPLE_HZ;
-        FidelitySample {
-            speed_m_per_s: Some(SPEED_M_PER_S),
-            reference_n: grating_n(t_s),
-            felt_n: felt_n(t_s),
-            natural_n: 0.3,
-            is_driven: true,
-            ..FidelitySample::default()
-        }
-    };
-    Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap()
+    scored_of(|t_s| sample(grating_n(t_s), felt_n(t_s)))
 }
 
 fn grating_n(t_s: f64) -> f64 {
@@ -68,16 +75,8 @@ fn force_that_the_scene_does_not_have_is_spurious() {
 /// The same texture of 150 Hz, a quarter of a period late: phase is not perceived.
 #[test]
 fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
-    let texture = |number: u32, late: f64| 0.004 * libm::sin(TAU * (150.0 * f64::from(number) / SAMPLE_HZ - late));
-    let sample = |number: u32| FidelitySample {
-        speed_m_per_s: Some(SPEED_M_PER_S),
-        reference_n: 0.3 + texture(number, 0.0),
-        felt_n: 0.3 + texture(number, 0.25),
-        natural_n: 0.3,
-        is_driven: true,
-        ..FidelitySample::default()
-    };
-    let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+    let texture = |t_s: f64, late: f64| 0.3 + 0.004 * libm::sin(TAU * (150.0 * t_s - late));
+    let fidelity = scored_of(|t_s| sample(texture(t_s, 0.0), texture(t_s, 0.25)));
     assert!(fidelity.spurious_40_to_400_hz_n < 1e-4, "{fidelity:?}");
     assert!((fidelity.snr_above_40_hz_db.unwrap() + 3.01).abs() < 0.1, "{fidelity:?}");
 }
@@ -85,20 +84,10 @@ fn a_texture_out_of_phase_is_an_error_and_not_spurious() {
 /// Natural friction that changes by more than the grating, and is independent of a display without output.
 #[test]
 fn natural_friction_makes_no_display_look_faithful() {
-    let sample = |number: u32| {
-        let t_s = f64::from(number) / SAMPLE_HZ;
+    let fidelity = scored_of(|t_s| {
         let natural_n = 0.3 + 0.1 * libm::sin(TAU * 3.0 * t_s);
-        let reference_n = natural_n + grating_n(t_s) - 0.3;
-        FidelitySample {
-            speed_m_per_s: Some(SPEED_M_PER_S),
-            reference_n,
-            felt_n: natural_n,
-            natural_n,
-            is_driven: true,
-            ..FidelitySample::default()
-        }
-    };
-    let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+        FidelitySample { natural_n, ..sample(natural_n + grating_n(t_s) - 0.3, natural_n) }
+    });
     assert!((fidelity.error_below_40_hz.unwrap() - 1.0).abs() < 1e-9, "{fidelity:?}");
     assert!(fidelity.correlation_below_40_hz.unwrap().abs() < 1e-12, "{fidelity:?}");
     assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");
@@ -119,19 +108,10 @@ fn a_flat_output_keeps_no_contrast_and_a_short_touch_has_no_score() {
 /// A finger at rest, or a source that loses reports, makes no contrast: the drive is off.
 #[test]
 fn what_faults_take_is_no_contrast_and_is_an_error() {
-    let sample = |number: u32| {
-        let is_driven = number % 800 >= 200;
-        let felt_n = if is_driven { 0.35 } else { 0.3 };
-        FidelitySample {
-            speed_m_per_s: Some(SPEED_M_PER_S),
-            reference_n: 0.35,
-            felt_n,
-            natural_n: 0.3,
-            is_driven,
-            ..FidelitySample::default()
-        }
-    };
-    let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+    let fidelity = scored_of(|t_s| {
+        let is_driven = (5.0 * t_s).fract() >= 0.25;
+        FidelitySample { is_driven, ..sample(0.35, if is_driven { 0.35 } else { 0.3 }) }
+    });
     assert!(fidelity.contrast_weber_steps.abs() < 1e-12, "{fidelity:?}");
     // A quarter of the time, 50 mN are missing, nearly all of it below 40 Hz.
     assert!((fidelity.error_weber / (0.025 / (WEBER_FRACTION * 0.35)) - 1.0).abs() < 0.03, "{fidelity:?}");
@@ -140,15 +120,7 @@ fn what_faults_take_is_no_contrast_and_is_an_error() {
 /// A plate is uniform, so there are no ratios to its changes.
 #[test]
 fn a_ratio_without_a_denominator_is_absent() {
-    let sample = |number: u32| FidelitySample {
-        speed_m_per_s: Some(SPEED_M_PER_S),
-        reference_n: 0.35 + 1e-9 * f64::from(number % 2),
-        felt_n: 0.35,
-        natural_n: 0.3,
-        is_driven: true,
-        ..FidelitySample::default()
-    };
-    let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+    let fidelity = scored_of(|t_s| sample(0.35 + 1e-9 * (t_s * SAMPLE_HZ % 2.0), 0.35));
     let Fidelity { error, correlation, contrast_kept, delay_ms, peak_rate_kept, snr_below_40_hz_db, .. } = fidelity;
     let ratios = [error, correlation, contrast_kept, delay_ms, peak_rate_kept, snr_below_40_hz_db];
     assert_eq!(ratios, [None; 6], "{fidelity:?}");
@@ -165,19 +137,8 @@ fn a_landing_counts_as_much_as_the_middle() {
 /// A gain at 60 Hz does not compensate a loss at 150 Hz.
 #[test]
 fn a_third_octave_that_lost_power_makes_up_for_none_that_grew() {
-    let wave = |t_s: f64, frequency_hz: f64| 0.004 * libm::sin(TAU * frequency_hz * t_s);
-    let sample = |number: u32| {
-        let t_s = f64::from(number) / SAMPLE_HZ;
-        FidelitySample {
-            speed_m_per_s: Some(SPEED_M_PER_S),
-            reference_n: 0.3 + wave(t_s, 150.0),
-            felt_n: 0.3 + wave(t_s, 60.0),
-            natural_n: 0.3,
-            is_driven: true,
-            ..FidelitySample::default()
-        }
-    };
-    let fidelity = Fidelity::of(&(0..8000).map(sample).collect::<Vec<_>>()).unwrap();
+    let wave_n = |t_s: f64, frequency_hz: f64| 0.3 + 0.004 * libm::sin(TAU * frequency_hz * t_s);
+    let fidelity = scored_of(|t_s| sample(wave_n(t_s, 150.0), wave_n(t_s, 60.0)));
     assert!((fidelity.spurious_40_to_400_hz_n / (0.004 / 2.0_f64.sqrt()) - 1.0).abs() < 0.01, "{fidelity:?}");
     let noise_n = natural_noise_amplitude_n(60.0);
     let expected_db = decibels((0.004 / noise_n).powi(2));

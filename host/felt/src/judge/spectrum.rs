@@ -103,12 +103,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_component_that_is_felt_best_wins_over_a_larger_one() {
-        let component = most_noticeable(&sines(4000, &[(12.0, 0.01), (200.0, 0.004)]), SAMPLE_HZ, |_| 1.0).unwrap();
-        assert!((component.frequency_hz - 200.0).abs() < 1.0, "{component:?}");
-    }
-
     /// The gain takes from 200 Hz what made it more noticeable than 40 Hz.
     #[test]
     fn what_is_most_noticeable_is_judged_behind_the_gain() {

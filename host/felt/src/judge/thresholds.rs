@@ -234,13 +234,6 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_a_weber_fraction_is_one_step() {
-        assert!((weber_steps(0.2, 0.222) - 1.0).abs() < 1e-12);
-        assert!((weber_steps(0.222, 0.2) + 1.0).abs() < 1e-12);
-        assert!((weber_steps_safe() - 2.29).abs() < 0.01);
-    }
-
-    #[test]
     fn verdicts_of_steps_change_at_one_and_at_the_safe_number() {
         let steps = [0.99, 1.01, 2.28, 2.30, -3.0, f64::NAN];
         let verdicts = steps.map(Verdict::of_step);

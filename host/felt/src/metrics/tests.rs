@@ -84,26 +84,6 @@ fn another_carrier_begins_with_empty_windows() {
 }
 
 #[test]
-fn a_carrier_that_averages_out_is_ripple_and_no_error() {
-    let samples: Vec<_> = (0..800).map(|tick| sample(0.26, 0.26 + if tick % 8 < 4 { 0.003 } else { -0.003 })).collect();
-    let summary = gather(&samples);
-    close(summary.carrier_ripple_rms_n.expect("ripple"), 0.003);
-    // The carrier shows only in windows shorter than a whole period.
-    let first: Vec<f64> =
-        [1.0, 1.0, 1.0, 1.0, 3.0 / 5.0, 2.0 / 6.0, 1.0 / 7.0].iter().map(|part| 0.003 * part).collect();
-    let expected = (first.iter().map(|error| error * error).sum::<f64>() / 800.0).sqrt();
-    let error = summary.friction_error.expect("an error");
-    close(error.rms_n, expected);
-    close(error.max_n, 0.003);
-}
-
-#[test]
-fn steady_motion_has_no_ripple() {
-    let samples: Vec<_> = (0..200).map(|tick| sample(0.25, 0.25 + 1e-4 * f64::from(tick))).collect();
-    assert!(gather(&samples).carrier_ripple_rms_n.expect("ripple") < 1e-15);
-}
-
-#[test]
 fn inversion_counts_only_what_is_in_reach_and_saturation_always() {
     let out = Sample { inversion_n: None, saturated: Some(true), ..sample(0.4, 0.2) };
     let summary = gather(&[out, sample(0.26, 0.261), sample(0.26, 0.258)]);

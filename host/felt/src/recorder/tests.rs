@@ -206,14 +206,19 @@ fn a_stream_that_a_board_refused_is_not_in_the_reference() {
     assert!(recorder.rows().iter().all(|row| in_mn(row.reference_n) == Some(250_000)));
 }
 
+/// Also by a recorder that had none before.
 #[test]
 fn another_program_is_compared_with_from_then_on() {
-    let mut recorder = recorder(&program(CONSTANT), 1);
-    recorder.record(&simulated(1, 0.25));
-    recorder.scene_replaced(&program(&CONSTANT.replace("0.26", "0.27")), &LIMITS).unwrap();
-    recorder.record(&simulated(2, 0.25));
-    let wanted: Vec<_> = recorder.rows().iter().map(|row| in_mn(row.reference_n)).collect();
-    assert_eq!(wanted, [Some(260_000), Some(270_000)]);
+    let first = program(CONSTANT);
+    for (mut recorder, before) in
+        [(recorder(&first, 1), Some(260_000)), (Recorder::without_reference(TICK_HZ, 1), None)]
+    {
+        recorder.record(&simulated(1, 0.25));
+        recorder.scene_replaced(&program(&CONSTANT.replace("0.26", "0.27")), &LIMITS).unwrap();
+        recorder.record(&simulated(2, 0.25));
+        let wanted: Vec<_> = recorder.rows().iter().map(|row| in_mn(row.reference_n)).collect();
+        assert_eq!(wanted, [before, Some(270_000)]);
+    }
 }
 
 #[test]
@@ -237,15 +242,6 @@ fn the_reference_goes_through_the_finger_that_felt() {
     let error = recorder.summary().friction_error.unwrap();
     assert!((error.rms_n - 1e-3).abs() < 1e-9, "{} N", error.rms_n);
     assert_eq!(recorder.summary().load_mismatch.map(|mismatch| in_mn(Some(mismatch.max_n))), Some(Some(20_000)));
-}
-
-#[test]
-fn a_recorder_that_is_told_of_a_program_later_compares_from_then_on() {
-    let mut recorder = Recorder::without_reference(TICK_HZ, 1);
-    recorder.record(&simulated(1, 0.25));
-    recorder.scene_replaced(&program(CONSTANT), &LIMITS).unwrap();
-    recorder.record(&simulated(2, 0.25));
-    assert_eq!(recorder.rows().iter().map(|row| in_mn(row.reference_n)).collect::<Vec<_>>(), [None, Some(260_000)]);
 }
 
 #[test]
