@@ -21,15 +21,12 @@ fn program(text: &str) -> Program {
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
+fn judged_program(program: &Program, advice: Advice) -> Judgement {
+    judge(program, &RigConfig::default(), &WorldOptions::default(), advice, TO_THE_END).unwrap()
+}
+
 fn judged(layers: &str, advice: Advice) -> Judgement {
-    judge(
-        &program(&format!("version = 1\n{layers}")),
-        &RigConfig::default(),
-        &WorldOptions::default(),
-        advice,
-        TO_THE_END,
-    )
-    .unwrap()
+    judged_program(&program(&format!("version = 1\n{layers}")), advice)
 }
 
 /// The topmost layer of a scene.
@@ -129,10 +126,7 @@ fn the_examples_of_the_docs_are_felt() {
     for example in examples.iter().filter(|example| example.contains("[[layer]]")) {
         let program = program(&examples::below_head(examples[0], example));
         let expected = if example.contains("kind = \"stream\"") { Verdict::Unknown } else { Verdict::Felt };
-        for found in judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END)
-            .unwrap()
-            .layers
-        {
+        for found in judged_program(&program, Advice::Omitted).layers {
             assert_eq!(found.verdict, expected, "{}\n{example}", feel::sentence(&found));
             let is_felt = found.click.is_none_or(|click| click.verdict == Verdict::Felt);
             assert!(is_felt, "{}\n{example}", feel::sentence(&found));
@@ -172,36 +166,6 @@ fn gratings_of_almost_the_same_wavelength_are_alike() {
     };
     assert_eq!(judged(&(half(0, 2.0) + &half(60, 2.05)), Advice::Omitted).alike.len(), 1);
     assert_eq!(judged(&(half(0, 2.0) + &half(60, 5.0)), Advice::Omitted).alike.len(), 0);
-}
-
-/// The click is all that there is of the edge.
-#[test]
-fn an_edge_is_felt_by_its_click() {
-    let edge = |click: f64| {
-        top(&format!(
-            "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 2\nridge_fraction = 0\nclick_fraction = {click}\n"
-        ))
-    };
-    let (strong, weak) = (edge(1.0), edge(0.05));
-    assert_eq!(strong.verdict, Verdict::Felt, "{}", feel::sentence(&strong));
-    assert_eq!(weak.verdict, Verdict::NotFelt, "{}", feel::sentence(&weak));
-}
-
-#[test]
-fn a_scene_without_layers_has_a_note() {
-    assert_eq!(judged("", Advice::Omitted).notes, ["the scene has no layer: there is nothing to feel"]);
-}
-
-/// The board drives with next to nothing, and the reference stays.
-#[test]
-fn nothing_is_felt_of_a_drive_forced_to_zero() {
-    for layers in [bar(10.0), button([14.0, 10.0, 2.0]), grating(1.0), grating(8.0)] {
-        let mut program = program(&format!("version = 1\n{layers}"));
-        program.header.voltage_max_v_rms = 1.0;
-        let found =
-            judge(&program, &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END).unwrap();
-        assert_eq!(found.layers[0].verdict, Verdict::NotFelt, "{layers}{}", feel::sentence(&found.layers[0]));
-    }
 }
 
 /// The element that follows its advice is felt.
@@ -260,9 +224,7 @@ fn the_judge_and_common_sense_agree() {
     let mut apart = Vec::new();
     for path in scenes() {
         let text = fs::read_to_string(&path).unwrap();
-        let checked =
-            judge(&program(&text), &RigConfig::default(), &WorldOptions::default(), Advice::Omitted, TO_THE_END)
-                .unwrap();
+        let checked = judged_program(&program(&text), Advice::Omitted);
         let expected: Vec<(&str, &str)> = text
             .lines()
             .filter_map(|line| line.strip_prefix("# ")?.split_once(": "))

@@ -110,20 +110,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_port_is_shown_with_its_usb_device() {
-        let mut port = PortInfo { path: "/dev/ttyS0".into(), usb: None };
-        assert_eq!(port.to_string(), "/dev/ttyS0");
-        port.usb = Some(UsbDevice {
-            vendor_id: 0x0483,
-            product_id: 0x374e,
-            manufacturer: Some("STMicroelectronics".into()),
-            product: None,
-            serial_number: Some("0042".into()),
-        });
-        assert_eq!(port.to_string(), "/dev/ttyS0 (USB 0483:374e, STMicroelectronics, serial number 0042)");
-    }
-
-    #[test]
     fn an_error_of_the_operating_system_becomes_advice() {
         let error = |kind| serialport::Error::new(kind, "reason");
         let why = |port, kind| why_not_opened(port, error(kind));

@@ -1,15 +1,19 @@
 //! Boards that are absent, of another version, silent, reset or unplugged. Each is reported within a second of virtual
 //! time.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::time::Duration;
 
 use frixel_driver::{Device, DeviceError, Event, Link, PollingLink};
 use frixel_hil_sim::{BoardMemory, BoardRig, RigFault};
 use frixel_wire::fault::{Fault, State};
+use frixel_wire::frame::Decoder;
 use frixel_wire::hello::{Hello, PROTOCOL_MAJOR};
-use frixel_wire::message::Command;
+use frixel_wire::message::{Command, Request};
+use frixel_wire::payload::Payload;
 
-use crate::calls::{MS, commit, connected, reconnected, virtual_board};
+use crate::calls::{MS, commit, connected, virtual_board};
 use crate::uploads::upload;
 use crate::virtual_link::{Fate, VirtualLine, VirtualLink, line_of};
 
@@ -28,7 +32,7 @@ fn silence(device: &mut Device<VirtualLink>) {
 }
 
 /// A line whose board sends a modified hello, and receives only hello requests.
-fn with_hello(spoil: impl Fn(&mut Hello) + Send + 'static) -> VirtualLine {
+fn with_hello(spoil: impl Fn(&mut Hello) + 'static) -> VirtualLine {
     let mut line = VirtualLine::new();
     line.change_hello(spoil);
     line.refuse = Some(Box::new(|command| panic!("{command:?} was sent to a board that is refused")));
@@ -156,13 +160,25 @@ fn hellos_that_are_answered_late_do_not_confuse_the_credit() {
 }
 
 #[test]
-fn two_hosts_one_after_the_other() {
-    let mut first = virtual_board();
-    first.arm().unwrap();
-    let mut second = reconnected(first);
-    assert_eq!(second.hello().state, State::Disarmed, "what the first armed is not the second's");
-    second.arm().unwrap();
-    assert_eq!(line_of(&mut second).state, State::Armed);
+fn a_dropped_device_stops_and_disarms() {
+    let mut line = VirtualLine::new();
+    let written = Rc::new(RefCell::new(Vec::new()));
+    let seen = Rc::clone(&written);
+    line.to_board_weather = Box::new(move |_, bytes| {
+        seen.borrow_mut().extend_from_slice(bytes);
+        Fate::Arrives
+    });
+    let mut device = connected(line);
+    device.arm().unwrap();
+    drop(device);
+    let (mut decoder, mut commands) = (Decoder::new(), Vec::new());
+    let mut written = &written.borrow()[..];
+    while let Some(payload) = decoder.next_frame(&mut written) {
+        if let Ok(Payload::Request(Request { command, .. })) = Payload::parse_from_host(payload) {
+            commands.push(command);
+        }
+    }
+    assert!(commands.ends_with(&[Command::Stop, Command::Disarm]), "{commands:?}");
 }
 
 #[test]

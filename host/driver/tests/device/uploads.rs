@@ -123,13 +123,6 @@ fn a_board_with_room_for_a_frame_and_a_few_pings_takes_an_upload() {
 }
 
 #[test]
-fn an_upload_alone_commits_no_scene() {
-    let mut device = virtual_board();
-    upload(&mut device).unwrap();
-    assert_eq!(reconnected(device).hello().scene_crc32, 0);
-}
-
-#[test]
 fn progress_only_grows_and_ends_with_all() {
     let (samples, scene) = (samples(62_500), scene(0.25));
     let mut device = virtual_board();
@@ -169,20 +162,6 @@ fn lost_bytes_do_not_use_up_the_credit() {
     });
     let mut device = upload_over(line);
     assert!(device.link_mut().written().bytes > 62_500 + 4 * u64::from(WINDOW));
-}
-
-/// No later chunk reveals the loss of the last one.
-#[test]
-fn a_lost_last_chunk_is_sent_again() {
-    let mut line = VirtualLine::new();
-    let mut lost = false;
-    line.to_board_weather = Box::new(move |_, frame| {
-        let last = frame.len() == 62_500 % 184 + 8;
-        let fate = if last && !lost { Fate::Lost } else { Fate::Arrives };
-        lost |= last;
-        fate
-    });
-    upload_over(line);
 }
 
 #[test]

@@ -32,13 +32,13 @@ pub(crate) enum Fate {
 }
 
 /// Chooses the outcome of a frame from its number, counted from zero, and its bytes.
-pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate + Send>;
+pub(crate) type Weather = Box<dyn FnMut(u64, &[u8]) -> Fate>;
 
 /// Returns the refusal of a command that is kept from the board; `None` passes the command on.
-type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal> + Send>;
+type Refuse = Box<dyn FnMut(&Command) -> Option<Refusal>>;
 
 /// Modifies a message from the board.
-type Change = Box<dyn Fn(&mut Payload) + Send>;
+type Change = Box<dyn Fn(&mut Payload)>;
 
 /// A link over the line. It pings like every link without a thread.
 pub(crate) type VirtualLink = PollingLink<VirtualLine>;
@@ -128,7 +128,7 @@ impl VirtualLine {
     }
 
     /// Changes the board's hello.
-    pub(crate) fn change_hello(&mut self, change: impl Fn(&mut Hello) + Send + 'static) {
+    pub(crate) fn change_hello(&mut self, change: impl Fn(&mut Hello) + 'static) {
         self.says = Some(Box::new(move |payload| {
             if let Payload::Hello(hello) = payload {
                 change(hello);
@@ -137,7 +137,7 @@ impl VirtualLine {
     }
 
     /// Changes the board's answers.
-    pub(crate) fn change_answers(&mut self, change: impl Fn(&mut Answer) + Send + 'static) {
+    pub(crate) fn change_answers(&mut self, change: impl Fn(&mut Answer) + 'static) {
         self.says = Some(Box::new(move |payload| {
             if let Payload::FromBoard(FromBoard::Answer(answer)) = payload {
                 change(answer);

@@ -99,13 +99,6 @@ fn a_texture_is_felt_as_far_as_its_power_is_played() {
 }
 
 #[test]
-fn a_layer_that_joins_those_below_is_felt_by_what_it_changes() {
-    let joined = "kind = \"constant\"\nfriction_fraction = 0.02\nblend = \"add\"";
-    let layers = FAULTLESS.judged(&(STRIPES.to_owned() + &plate(40, joined))).layers;
-    assert_eq!([layers[0].verdict, layers[1].verdict], [Verdict::Felt, Verdict::NotFelt], "{layers:#?}");
-}
-
-#[test]
 fn directions_are_compared_there_and_back() {
     for angle_deg in [0, 90, 200] {
         let velvet = format!("kind = \"direction\"\nangle_deg = {angle_deg}\nalong_n = 0.01\nagainst_n = 0.1");
@@ -130,14 +123,6 @@ fn copies_are_judged_once() {
     assert_eq!((judgement.layers.len(), plays), (3, 3));
     let lines = feel::lines(&judgement);
     assert!(lines.len() == 1 && lines[0].1.starts_with("layer 1.1 (constant) and 2 alike: "), "{lines:?}");
-}
-
-/// A layer that starts off is judged as if it were on, and another one without it.
-#[test]
-fn a_layer_that_starts_off_is_judged_switched_on() {
-    let off = "kind = \"constant\"\nname = \"off\"\nfriction_fraction = 0.9\nlive = true\nstart = \"off\"";
-    let layers = FAULTLESS.judged(&(WEAVE.to_owned() + &plate(40, off))).layers;
-    assert_eq!([layers[0].verdict, layers[1].verdict], [Verdict::Felt; 2], "{layers:#?}");
 }
 
 #[test]
@@ -172,16 +157,6 @@ fn a_hidden_layer_is_not_judged() {
     assert_eq!(FAULTLESS.judged(&(constant(0.2) + &constant(0.4))).layers.len(), 1);
 }
 
-/// The part of a long screen where the ridge is.
-#[test]
-fn a_ridge_is_found_wherever_it_lies_on_a_long_screen() {
-    let found = FAULTLESS.only(
-        "[screen]\nwidth_mm = 2000\nheight_mm = 20\n\
-         [[layer]]\nkind = \"edge\"\nx_mm = 1500\ny_mm = 10\nwidth_mm = 12\nridge_fraction = 0.9\n",
-    );
-    assert_eq!(found.verdict, Verdict::Felt, "{found:?}");
-}
-
 /// The output is for a terminal of 80 by 40 characters, which wraps longer lines.
 #[test]
 fn many_layers_fit_a_terminal() {
@@ -198,18 +173,6 @@ fn many_layers_fit_a_terminal() {
     assert!(rows <= 27, "{rows} rows beside those of costs: {lines:#?}");
     let counted: String = lines.iter().filter(|(name, _)| *name == "more").map(|(_, text)| text.as_str()).collect();
     assert!(counted.contains("felt"), "{lines:#?}");
-}
-
-/// The notches act on a finger that slides against the axis of the layer above.
-#[test]
-fn what_only_one_direction_lets_through_is_felt_on_the_way_back() {
-    let half = "region = { x_mm = 64, y_mm = 0, width_mm = 56, height_mm = 80 }\n";
-    let ratchet = format!(
-        "[[layer]]\nkind = \"grating\"\nwavelength_mm = 8\nlow_fraction = 0\nhigh_fraction = 0.9\n{half}\
-         [[layer]]\nkind = \"direction\"\nblend = \"multiply\"\nalong_factor = 0\nagainst_factor = 1\n{half}"
-    );
-    let notches = &FAULTLESS.judged(&ratchet).layers[0];
-    assert_eq!(notches.verdict, Verdict::Felt, "{}", feel::sentence(notches));
 }
 
 #[test]
