@@ -1,7 +1,7 @@
 //! How good fits of simulated people are: `cargo run -p frixel-lab --example fit_floors -- [PART [COUNT]]`.
 //!
-//! Parts are `people`, `filters`, `square` and `means`; without one, all of them run. COUNT is a number of people or of
-//! tables. Each line ends with the floor that it holds, and the program fails if one is missed.
+//! Parts are `people`, `filters` and `square`; without one, all of them run. COUNT is a number of people. Each line ends
+//! with the floor that it holds, and the program fails if one is missed.
 #![allow(clippy::unwrap_used, dead_code, reason = "modules of the tests, of which this uses a part")]
 
 #[path = "../tests/filters.rs"]
@@ -17,13 +17,12 @@ use std::process::ExitCode;
 
 use filters::Filter;
 use frixel_hil_sim::Person;
-use frixel_lab::fit::{Data, MeanRow, Settings, fit, fit_data};
-use frixel_play::TO_THE_END;
-use person::{Law, Protocol, Random};
+use frixel_lab::fit::{Settings, fit};
+use person::{Law, Protocol};
 use rayon::prelude::*;
 use tally::Tally;
 
-/// Prints a part for a number of people or tables; whether its floors hold.
+/// Prints a part for a number of people; whether its floors hold.
 type Part = fn(Option<u64>) -> bool;
 
 /// Recordings of each person.
@@ -43,7 +42,7 @@ fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let part = arguments.next();
     let count = arguments.next().and_then(|count| count.parse().ok());
-    let parts: [(&str, Part); 4] = [("people", people), ("filters", filters), ("square", square), ("means", means)];
+    let parts: [(&str, Part); 3] = [("people", people), ("filters", filters), ("square", square)];
     let asked = parts.iter().filter(|(name, _)| part.as_deref().is_none_or(|part| part == *name));
     // All parts run, whether one before it holds or not.
     let held: Vec<bool> = asked.map(|(_, run)| run(count)).collect();
@@ -92,10 +91,11 @@ fn people(count: Option<u64>) -> bool {
 
 /// Causal and smoothing filters of 10 to 300 Hz: refused, or right.
 fn filters(count: Option<u64>) -> bool {
-    let tallies = fits(count.unwrap_or(24), 1, &Filter::SWEEP, 36);
+    let filters = Filter::sweep();
+    let tallies = fits(count.unwrap_or(24), 1, &filters, 36);
     println!("filters of 10 to 300 Hz and smoothing over 3 to 75 ms; floor: all refused, or bias <= 1 %");
     let mut holds = true;
-    for (filter, tally) in Filter::SWEEP.iter().zip(&tallies) {
+    for (filter, tally) in filters.iter().zip(&tallies) {
         let held = tally.fitted == 0 || tally.bias().abs() <= 0.01;
         println!("  {:<28} {tally}{}", filter.to_string(), missed(held));
         holds &= held;
@@ -123,40 +123,6 @@ fn square(count: Option<u64>) -> bool {
         holds &= held;
     }
     holds
-}
-
-/// Tables of means of 10 values with a standard deviation of 8 %.
-fn means(count: Option<u64>) -> bool {
-    println!("tables of means of 10 values with a standard deviation of 8 %; floor: bias <= 1 %, refused <= 2 %");
-    let person = person::Person::example(1);
-    let truth_n = person.truth(person.load_n).1;
-    let table = |seed: u64| {
-        let mut random = Random::new(seed);
-        let row = |(index, voltage_v_rms): (usize, f64)| {
-            let electric_n =
-                if voltage_v_rms > 0.0 { 0.5 * person.attraction_n(voltage_v_rms, person.load_n) } else { 0.0 };
-            let truth_n = 0.5 * person.load_n + electric_n;
-            let values: Vec<f64> = (0..10).map(|_| truth_n * (1.0 + 0.08 * random.gaussian())).collect();
-            let mean_n = values.iter().sum::<f64>() / 10.0;
-            let square = values.iter().map(|value| (value - mean_n).powi(2)).sum::<f64>() / 9.0;
-            MeanRow {
-                number: index as u64 + 2,
-                voltage_v_rms,
-                normal_force_n: person.load_n,
-                friction_n: mean_n,
-                standard_error_n: (square / 10.0).sqrt(),
-                count: Some(10.0),
-            }
-        };
-        let rows = [0.0, 75.0, 106.0, 150.0].into_iter().enumerate().map(row).collect();
-        let mut tally = Tally::default();
-        tally.add(fit_data(Data::Means(rows), &settings(), TO_THE_END), |_| (0.5, truth_n));
-        tally
-    };
-    let tally = (0..count.unwrap_or(600)).into_par_iter().map(table).reduce(Tally::default, Tally::and);
-    let held = tally.bias().abs() <= 0.01 && tally.refused() <= 0.02;
-    println!("  {:<28} {tally}{}", "one load", missed(held));
-    held
 }
 
 fn missed(held: bool) -> &'static str {

@@ -60,11 +60,15 @@ fn powers_of_the_voltage_are_recovered_where_the_contact_model_is_refused() {
 }
 
 #[test]
-fn a_profile_of_a_power_law_is_read_again() {
-    let fit = empirical(record(4.0)).unwrap();
+fn a_profile_of_either_law_is_read_again() {
     let experiment = Experiment { date: "2026-11-23".into(), method: "load cell".into(), screen: "example".into() };
-    let profile = fit.profile(experiment);
-    assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
+    let points = empirical(bent(1, [37.0, 111.0, 150.0]).1).unwrap();
+    assert!(points.words().contains("points that power laws join"), "{}", points.words());
+    assert_eq!(points.json()["points"].as_array().map(Vec::len), Some(3));
+    for fit in [empirical(record(4.0)).unwrap(), points] {
+        let profile = fit.profile(experiment.clone());
+        assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
+    }
 }
 
 /// A program reads the keys of `--json` whatever the law is.
@@ -82,45 +86,28 @@ fn the_keys_of_a_fit_are_there_for_every_law() {
 }
 
 #[test]
-fn equal_loads_are_no_obstacle() {
-    let person = Person { load_share: 0.0, ..person(2.0, 1) };
-    let mut rows = person.record(&Protocol::default());
-    for row in &mut rows {
-        row.normal_force_n = person.load_n;
-    }
-    let fit = empirical(rows).unwrap();
+fn equal_loads_and_a_small_friction_coefficient_are_no_obstacle() {
+    let person = Person { load_share: 0.0, friction_coefficient: 0.1, ..person(2.0, 1) };
+    let rows = person.record(&Protocol::default()).into_iter();
+    let fit = empirical(rows.map(|row| Row { normal_force_n: person.load_n, ..row }).collect()).unwrap();
     assert!((fit.normal_load_n - person.load_n).abs() < 1e-12);
-}
-
-#[test]
-fn a_small_friction_coefficient_is_no_obstacle() {
-    let person = Person { friction_coefficient: 0.1, ..person(2.0, 1) };
-    let fit = empirical(person.record(&Protocol::default())).unwrap();
     assert!((fit.friction_coefficient.value / 0.1 - 1.0).abs() < 0.05, "{fit:?}");
-}
-
-#[test]
-fn means_have_a_power_law_too() {
-    let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,friction_se_n\n");
-    for volts in [0.0_f64, 60.0, 80.0, 106.0, 150.0] {
-        let friction_n = 0.25 + 0.1 * (volts / 150.0).powi(4);
-        writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
-    }
-    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
-    assert!(contains(&exponent_of(&fit), 4.0) && contains(&fit.highest.electric_friction_n, 0.1), "{fit:?}");
-    assert_eq!((fit.strokes, fit.held_out_n), (5, None));
 }
 
 /// The friction coefficient is that of the law, not that of a model which lies beside the means.
 #[test]
-fn means_of_a_steep_law_have_the_friction_coefficient_of_that_law() {
-    let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,friction_se_n\n");
-    for volts in [0.0_f64, 75.0, 106.0, 150.0] {
-        let friction_n = 0.25 + 0.1 * (volts / 150.0).powi(6);
-        writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
+fn means_have_a_power_law_with_its_friction_coefficient_too() {
+    for exponent in [4.0, 6.0] {
+        let mut csv = String::from("voltage_v_rms,normal_force_n,friction_n,friction_se_n\n");
+        for volts in [0.0_f64, 60.0, 80.0, 106.0, 150.0] {
+            let friction_n = 0.25 + 0.1 * (volts / 150.0).powf(exponent);
+            writeln!(csv, "{volts},0.5,{friction_n},0.001").unwrap();
+        }
+        let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
+        assert!(contains(&exponent_of(&fit), exponent) && contains(&fit.highest.electric_friction_n, 0.1), "{fit:?}");
+        assert_eq!((fit.strokes, fit.held_out_n), (5, None));
+        assert!((fit.friction_coefficient.value - 0.5).abs() < 1e-3, "{:?}", fit.friction_coefficient);
     }
-    let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
-    assert!((fit.friction_coefficient.value - 0.5).abs() < 1e-3, "{:?}", fit.friction_coefficient);
 }
 
 /// At half of the voltage such a finger has 1 % of the friction or less, as little as noise: no stroke of it stuck.
@@ -169,16 +156,6 @@ fn a_finger_without_a_power_law_has_the_points_that_were_measured() {
     }
     // Of 18 intervals of 95 %, four or more miss the truth in one set of seeds in 90.
     assert!(missed <= 3, "{missed} of 18");
-}
-
-#[test]
-fn a_profile_of_points_is_read_again() {
-    let fit = empirical(bent(1, [37.0, 111.0, 150.0]).1).unwrap();
-    let experiment = Experiment { date: "2026-11-23".into(), method: "load cell".into(), screen: "example".into() };
-    let profile = fit.profile(experiment);
-    assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
-    assert!(fit.words().contains("points that power laws join"), "{}", fit.words());
-    assert_eq!(fit.json()["points"].as_array().map(Vec::len), Some(3));
 }
 
 /// What is too small to measure at 75 V makes the law below 106 V as steep as a profile can have it.

@@ -38,42 +38,15 @@ impl fmt::Display for Filter {
 }
 
 impl Filter {
-    pub(super) const SWEEP: [Self; 34] = [
-        Self::OnePole(300.0),
-        Self::OnePole(150.0),
-        Self::OnePole(100.0),
-        Self::OnePole(60.0),
-        Self::OnePole(30.0),
-        Self::OnePole(10.0),
-        Self::Butterworth(300.0),
-        Self::Butterworth(150.0),
-        Self::Butterworth(120.0),
-        Self::Butterworth(80.0),
-        Self::Butterworth(60.0),
-        Self::Butterworth(30.0),
-        Self::Butterworth(10.0),
-        Self::Filtfilt(300.0),
-        Self::Filtfilt(200.0),
-        Self::Filtfilt(150.0),
-        Self::Filtfilt(120.0),
-        Self::Filtfilt(100.0),
-        Self::Filtfilt(80.0),
-        Self::Filtfilt(60.0),
-        Self::Filtfilt(40.0),
-        Self::Filtfilt(20.0),
-        Self::Filtfilt(10.0),
-        Self::Mean(3),
-        Self::Mean(7),
-        Self::Mean(11),
-        Self::Mean(21),
-        Self::Mean(51),
-        Self::Mean(75),
-        Self::SavitzkyGolay(7),
-        Self::SavitzkyGolay(9),
-        Self::SavitzkyGolay(11),
-        Self::SavitzkyGolay(21),
-        Self::SavitzkyGolay(51),
-    ];
+    /// Filters of 10 to 300 Hz, and smoothing over 3 to 75 ms.
+    pub(super) fn sweep() -> Vec<Self> {
+        let one_pole = [300.0, 150.0, 100.0, 60.0, 30.0, 10.0].map(Self::OnePole);
+        let butterworth = [300.0, 150.0, 120.0, 80.0, 60.0, 30.0, 10.0].map(Self::Butterworth);
+        let filtfilt = [300.0, 200.0, 150.0, 120.0, 100.0, 80.0, 60.0, 40.0, 20.0, 10.0].map(Self::Filtfilt);
+        let mean = [3, 7, 11, 21, 51, 75].map(Self::Mean);
+        let savitzky_golay = [7, 9, 11, 21, 51].map(Self::SavitzkyGolay);
+        [&one_pole[..], &butterworth, &filtfilt, &mean, &savitzky_golay].concat()
+    }
 
     /// Filters friction and load, in each stroke apart.
     pub(super) fn apply(self, rows: &[Row]) -> Vec<Row> {

@@ -308,14 +308,6 @@ fn invert_takes_the_friction_that_is_filled_in() {
     assert!(rows[3..9].iter().all(|row| row["voltage_v"].is_empty()));
 }
 
-#[test]
-fn lines_of_blanks_are_no_rows() {
-    let text = format!("{HEADER}\r\n\r\n{}\r\n \t \r\n{}\r\n   \r\n", GOOD[0], changed(GOOD[0], "radius_m", "x"));
-    let (rows, summary) = transformed(eval, Precision::F64, &text);
-    assert_eq!((summary.rows, summary.invalid_rows), (2, 1));
-    assert!(rows[1]["status"].starts_with("invalid: row 5, column radius_m"), "{:?}", rows[1]);
-}
-
 /// Rows without end.
 struct Endless {
     text: Vec<u8>,

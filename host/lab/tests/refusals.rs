@@ -45,23 +45,6 @@ fn good_data_are_accepted_and_give_the_example_back() {
 }
 
 #[test]
-fn every_row_of_the_file_is_checked() {
-    let header = "voltage_v_rms,normal_force_n,friction_n";
-    let rows = |text: &str| fit::rows(text.as_bytes()).err().unwrap().to_string();
-    assert!(rows(&format!("{header}\n150,nan,0.2\n")).contains("row 2, column normal_force_n: expected a number"));
-    assert!(rows(&format!("{header}\n150,0.5,\n")).contains("friction_n"));
-    assert!(rows("voltage_v_rms,friction_n\n1,2\n").contains("no column normal_force_n"));
-    assert!(rows("voltage_v_rms,normal_force_kg,friction_n\n1,2,3\n").contains("it has normal_force_kg"));
-    assert!(rows(&format!("{header},friction_n\n1,2,3,4\n")).contains("twice"));
-    assert!(rows(&format!("{header}\n-150,0.5,0.2\n")).contains("below zero"));
-    assert!(rows(&format!("{header}\n15000,0.5,0.2\n")).contains("above 1000 V"));
-    let any_order = "stroke,friction_n,comment,time_s,normal_force_n,voltage_v_rms\n7,0.25,x,0.001,0.5,150\n";
-    let rows = fit::rows(any_order.as_bytes()).unwrap().value;
-    assert_eq!(rows[0].stroke.as_deref(), Some("7"));
-    assert_eq!((rows[0].voltage_v_rms, rows[0].normal_force_n, rows[0].friction_n), (150.0, 0.5, 0.25));
-}
-
-#[test]
 fn a_force_that_no_finger_has_is_refused_by_its_row() {
     let mut rows = example();
     rows[700].friction_n = 200.0;
