@@ -1,35 +1,21 @@
 //! A force sensor that is too slow is seen, and one that is fast enough is not refused.
 
-use std::f64::consts::TAU;
-
 use frixel_hil_sim::Person;
-use frixel_lab::fit::{Fit, FitError, Row, fit};
+use frixel_lab::fit::{Fit, FitError, fit};
 
+use super::filters::Filter;
 use super::person::Protocol;
 use super::{settings, simulated};
 
 /// People who are measured with each sensor.
 const PEOPLE: u64 = 8;
 
-/// What a sensor of one pole measures, with every `step`th row of what the finger does.
-fn through_sensor(rows: &[Row], cutoff_hz: f64, step: usize) -> Vec<Row> {
-    let left = (-TAU * cutoff_hz / 1e3).exp();
-    let Some(first) = rows.first() else { return Vec::new() };
-    let (mut friction_n, mut normal_force_n) = (first.friction_n, first.normal_force_n);
-    let measured = rows.iter().map(|row| {
-        friction_n = row.friction_n + left * (friction_n - row.friction_n);
-        normal_force_n = row.normal_force_n + left * (normal_force_n - row.normal_force_n);
-        Row { friction_n, normal_force_n, ..row.clone() }
-    });
-    measured.step_by(step).collect()
-}
-
-/// The fits of people with this sensor.
+/// The fits of people with a sensor of one pole, with every `step`th row of what it measures.
 fn fits(cutoff_hz: f64, step: usize) -> Vec<Result<Fit, FitError>> {
     let protocol = Protocol { strokes: 24, ..Protocol::default() };
     let of = |seed| {
         let rows = simulated::record(&Person::drawn(seed), &protocol, seed);
-        fit(through_sensor(&rows, cutoff_hz, step), &settings())
+        fit(Filter::OnePole(cutoff_hz).apply(&rows).into_iter().step_by(step).collect(), &settings())
     };
     (0..PEOPLE).map(of).collect()
 }
