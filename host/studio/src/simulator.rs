@@ -278,17 +278,6 @@ mod tests {
         assert!(contact_mm > 1.02 * still_mm && contact_mm < 1.2 * still_mm, "{contact_mm} mm, {still_mm} mm");
     }
 
-    #[test]
-    fn a_silent_host_ends_the_output_within_its_timeout() {
-        let mut simulator = Simulator::new(1).unwrap();
-        simulator.play(&request()).unwrap();
-        simulator.run(40_000, true).unwrap();
-        assert_eq!(simulator.state().0, State::Active);
-        // 250 ms, and a millisecond to act.
-        simulator.run(10_040, false).unwrap();
-        assert_eq!(simulator.state().0, State::Disarmed);
-    }
-
     /// A draft plays here, clamped, even one whose ticks take longer than a board has time for.
     #[test]
     fn a_draft_plays() {

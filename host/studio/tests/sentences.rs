@@ -58,18 +58,6 @@ fn a_mistake_has_its_sentence_and_its_place() {
     assert_eq!(answer["ok"], false);
 }
 
-#[test]
-fn a_missing_picture_and_an_empty_request_are_sentences() {
-    let brick = gallery::requests(Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap().remove(0);
-    let mut files = brick.files.clone();
-    files.remove("textures/brick.png");
-    let answer = check(&Request { files, ..brick });
-    let sentence = answer["problems"][0]["message"].as_str().unwrap();
-    assert!(sentence.contains("brick.png"), "{answer}");
-    let answer = check(&Request { entry: "none.toml".to_owned(), ..Request::default() });
-    assert!(answer["problems"][0]["message"].as_str().unwrap().contains("none.toml"), "{answer}");
-}
-
 /// A request for a scene `play.toml` with further files.
 fn request(text: &str, files: &[(&str, &str)]) -> Request {
     let all = std::iter::once(("play.toml", text)).chain(files.iter().copied());

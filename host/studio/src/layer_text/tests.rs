@@ -48,52 +48,30 @@ fn parsed(text: &str) -> Value {
     plain(Value::Table(text.parse::<Table>().unwrap_or_else(|error| panic!("{error}\n{text}"))))
 }
 
-/// The request of an edit: `set` has changes, the others have the number of a layer.
-fn request(text: &str, edit: &serde_json::Value) -> String {
-    let word = |value: &serde_json::Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let words = |values: &serde_json::Value| values.as_array().unwrap().iter().map(word).collect::<Vec<_>>();
-    let (act, what) = edit.as_object().unwrap().iter().next().unwrap();
-    let parts = match act.as_str() {
-        "set" => what
-            .as_array()
-            .unwrap()
-            .iter()
-            .flat_map(|change| {
-                [
-                    words(&change["path"]).join("\n"),
-                    word(&change["value"]),
-                    change["after"].as_str().unwrap_or("").to_owned(),
-                ]
-            })
-            .collect(),
-        _ => vec![word(what)],
-    };
-    [vec![act.clone(), text.to_owned()], parts].concat().join("\0")
+/// A text after an act with these words.
+fn edited(act: &str, text: &str, words: &[&str]) -> Result<String, TextError> {
+    edit(&[&[act, text], words].concat().join("\0"))
 }
 
-fn edited(text: &str, edit: &serde_json::Value) -> String {
-    super::edit(&request(text, edit)).unwrap()
+/// The words of a change of the value at a path.
+fn change(path: &str, value: &str, after: &str) -> [String; 3] {
+    [path.replace('.', "\n"), value.to_owned(), after.to_owned()]
 }
 
-fn set(text: &str, path: &serde_json::Value, value: &str) -> String {
-    edited(text, &json!({ "set": [{ "path": path, "value": value }] }))
+fn set(text: &str, changes: &[[String; 3]]) -> Result<String, TextError> {
+    let words: Vec<&str> = changes.as_flattened().iter().map(String::as_str).collect();
+    edited("set", text, &words)
 }
 
 /// The paths of all numbers, each with a pointer to set them in parsed values.
-fn numbers<'v>(
-    value: &'v mut Value,
-    path: &[serde_json::Value],
-    found: &mut Vec<(Vec<serde_json::Value>, &'v mut f64)>,
-) {
-    let behind = |key: serde_json::Value| [path, &[key]].concat();
+fn numbers<'v>(value: &'v mut Value, path: &str, found: &mut Vec<(String, &'v mut f64)>) {
+    let behind = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match value {
-        Value::Float(number) => found.push((path.to_vec(), number)),
+        Value::Float(number) => found.push((path.to_owned(), number)),
         Value::Array(values) => {
-            values.iter_mut().enumerate().for_each(|(at, value)| numbers(value, &behind(at.into()), found));
+            values.iter_mut().enumerate().for_each(|(at, value)| numbers(value, &behind(&at.to_string()), found));
         }
-        Value::Table(table) => {
-            table.iter_mut().for_each(|(key, value)| numbers(value, &behind(key.clone().into()), found));
-        }
+        Value::Table(table) => table.iter_mut().for_each(|(key, value)| numbers(value, &behind(key), found)),
         _ => {}
     }
 }
@@ -104,16 +82,16 @@ fn a_number_is_changed_where_it_stands_and_nothing_else() {
     for text in texts() {
         let mut before = parsed(&text);
         let mut paths = Vec::new();
-        numbers(&mut before, &[], &mut paths);
+        numbers(&mut before, "", &mut paths);
         let count = paths.len();
         for (at, value) in (0..count).flat_map(|at| ["-3", "0", "64", "0.3", "-123456.79"].map(|value| (at, value))) {
             let mut expected = parsed(&text);
             let mut paths = Vec::new();
-            numbers(&mut expected, &[], &mut paths);
+            numbers(&mut expected, "", &mut paths);
             let (path, number) = paths.swap_remove(at);
             let is_same = Ok(*number) == value.parse();
             *number = value.parse().unwrap();
-            let after = set(&text, &path.clone().into(), value);
+            let after = set(&text, &[change(&path, value, "")]).unwrap();
             assert_eq!(parsed(&after), expected, "{path:?} = {value}");
             assert_eq!(after == text, is_same, "{path:?} = {value}");
             let same = |(one, other): &(u8, u8)| one == other;
@@ -129,38 +107,38 @@ fn a_number_is_changed_where_it_stands_and_nothing_else() {
 
 #[test]
 fn several_values_are_changed_at_once_and_a_number_keeps_its_point() {
-    let changes = json!({ "set": [
-        { "path": ["layer", 1, "region", "width_mm"], "value": "4.25" },
-        { "path": ["layer", 0, "points", 1, 0], "value": "7" },
-        { "path": ["layer", 0, "kind"], "value": "\"edge\"" },
-        { "path": ["layer", 1, "region", "x_mm"], "value": "6" },
-    ] });
+    let changes = [
+        change("layer.1.region.width_mm", "4.25", ""),
+        change("layer.0.points.1.0", "7", ""),
+        change("layer.0.kind", "\"edge\"", ""),
+        change("layer.1.region.x_mm", "6", ""),
+    ];
     let expected = FORMS.replace("[2.5,", "[7.0,").replace("{x_mm = 1.0", "{x_mm = 6.0").replace("=3}", "=4.25}");
-    assert_eq!(edited(FORMS, &changes), expected.replace("'rings'", "\"edge\""));
+    assert_eq!(set(FORMS, &changes).unwrap(), expected.replace("'rings'", "\"edge\""));
 }
 
 #[test]
 fn a_key_that_is_missing_is_added_in_the_form_that_its_table_has() {
     for (text, path, value, from, to) in [
-        (FORMS, json!(["layer", 0, "region", "y_mm"]), "4", "\"ellipse\"", "\"ellipse\"\n  region.y_mm = 4"),
-        (FORMS, json!(["defaults", "region", "width_mm"]), "4", "= +2", "= +2\nregion.width_mm = 4"),
-        (FORMS, json!(["layer", 1, "region", "height_mm"]), "4", "width_mm=3}", "width_mm=3, height_mm = 4}"),
-        (FORMS, json!(["layer", 1, "burst", "on_ms"]), "4", "burst = {}", "burst = { on_ms = 4 }"),
-        (FORMS, json!(["layer", 1, "gain"]), "0.5", "burst = {}", "burst = {}\ngain = 0.5"),
-        (FORMS, json!(["layer", 2, "gain"]), "0.5", "# empty", "gain = 0.5\n# empty"),
-        (FORMS, json!(["layer", 2, "region", "y_mm"]), "1", "-0.5#close", "-0.5#close\ny_mm = 1"),
-        (FORMS, json!(["layer", 2, "repeat"]), "{ rows = 2 }", "# empty", "repeat = { rows = 2 }\n# empty"),
-        (ODD, json!(["layer", 0, "region", "height_mm"]), "4", "width_mm = 5 }", "width_mm = 5, height_mm = 4 }"),
-        (ODD, json!(["layer", 0, "angle_deg"]), "4", "width_mm = 5 }", "width_mm = 5 }\nangle_deg = 4"),
-        (ODD, json!(["layer", 0, "repeat", "rows"]), "2", "dx_mm = 4", "dx_mm = 4\nrows = 2"),
-        (ARRAY, json!(["layer", 1, "region", "y_mm"]), "2", "x_mm = 1 }", "x_mm = 1, region.y_mm = 2 }"),
+        (FORMS, "layer.0.region.y_mm", "4", "\"ellipse\"", "\"ellipse\"\n  region.y_mm = 4"),
+        (FORMS, "defaults.region.width_mm", "4", "= +2", "= +2\nregion.width_mm = 4"),
+        (FORMS, "layer.1.region.height_mm", "4", "width_mm=3}", "width_mm=3, height_mm = 4}"),
+        (FORMS, "layer.1.burst.on_ms", "4", "burst = {}", "burst = { on_ms = 4 }"),
+        (FORMS, "layer.1.gain", "0.5", "burst = {}", "burst = {}\ngain = 0.5"),
+        (FORMS, "layer.2.gain", "0.5", "# empty", "gain = 0.5\n# empty"),
+        (FORMS, "layer.2.region.y_mm", "1", "-0.5#close", "-0.5#close\ny_mm = 1"),
+        (FORMS, "layer.2.repeat", "{ rows = 2 }", "# empty", "repeat = { rows = 2 }\n# empty"),
+        (ODD, "layer.0.region.height_mm", "4", "width_mm = 5 }", "width_mm = 5, height_mm = 4 }"),
+        (ODD, "layer.0.angle_deg", "4", "width_mm = 5 }", "width_mm = 5 }\nangle_deg = 4"),
+        (ODD, "layer.0.repeat.rows", "2", "dx_mm = 4", "dx_mm = 4\nrows = 2"),
+        (ARRAY, "layer.1.region.y_mm", "2", "x_mm = 1 }", "x_mm = 1, region.y_mm = 2 }"),
     ] {
-        let after = set(text, &path, value);
+        let after = set(text, &[change(path, value, "")]).unwrap();
         assert_eq!(after, text.replacen(from, to, 1), "{path}");
         parsed(&after);
     }
-    let behind = json!({ "set": [{ "path": ["layer", 0, "gain"], "value": "2", "after": "kind" }] });
-    assert_eq!(edited(FORMS, &behind), FORMS.replace("'rings'", "'rings'\n  gain = 2"));
+    let behind = set(FORMS, &[change("layer.0.gain", "2", "kind")]).unwrap();
+    assert_eq!(behind, FORMS.replace("'rings'", "'rings'\n  gain = 2"));
 }
 
 fn layers(value: &mut Value) -> &mut Vec<Value> {
@@ -173,7 +151,7 @@ fn a_layer_comes_goes_and_is_copied_and_every_other_value_stays() {
         for at in 0..layers(&mut parsed(&text)).len() {
             let (mut less, mut more) = (parsed(&text), parsed(&text));
             layers(&mut less).remove(at);
-            let without = edited(&text, &json!({ "remove": at }));
+            let without = edited("remove", &text, &[&at.to_string()]).unwrap();
             let left =
                 without.parse::<Table>().unwrap().get("layer").map_or(0, |layers| layers.as_array().unwrap().len());
             assert_eq!(left, layers(&mut less).len());
@@ -183,7 +161,7 @@ fn a_layer_comes_goes_and_is_copied_and_every_other_value_stays() {
             assert!(!without.contains("\n\n\n") && !without.ends_with("\n\n"), "a gap is left:\n{without}");
             let copy = layers(&mut more)[at].clone();
             layers(&mut more).insert(at + 1, copy);
-            assert_eq!(parsed(&edited(&text, &json!({ "copy": at }))), more);
+            assert_eq!(parsed(&edited("copy", &text, &[&at.to_string()]).unwrap()), more);
         }
         let mut more = parsed(&text);
         layers(&mut more).push(Value::Table("kind = \"edge\"\nregion = { x_mm = 1.0 }".parse().unwrap()));
@@ -195,7 +173,7 @@ fn a_layer_comes_goes_and_is_copied_and_every_other_value_stays() {
 
 #[test]
 fn a_layer_goes_with_its_own_comment_and_no_other() {
-    let without = |text: &str, at: usize| edited(text, &json!({ "remove": at }));
+    let without = |text: &str, at: usize| edited("remove", text, &[&at.to_string()]).unwrap();
     let before = |part: &str| FORMS.find(part).unwrap();
     assert_eq!(without(FORMS, 2), format!("{}\n", &FORMS[..before("\n\n# the last one")]));
     assert_eq!(without(FORMS, 0), FORMS[..before("# above")].to_owned() + &FORMS[before("[[layer]]\nregion")..]);
@@ -219,9 +197,9 @@ fn the_last_element_of_an_array_goes_and_the_comment_of_the_one_before_stays() {
         ("layer = [{ a = 1 }, # one\n  { b = 2 } # 2, 3\n]", "layer = [{ a = 1 }, # one\n]"),
         ("layer = [\n  { a = 1 }, # one\n  { b = 2 } # two, too\n  , # end\n]", "layer = [\n  { a = 1 }, # one\n]"),
     ] {
-        assert_eq!(edited(text, &json!({ "remove": 1 })), expected);
+        assert_eq!(edited("remove", text, &["1"]).unwrap(), expected);
     }
-    assert_eq!(edited("layer = [ { a = 1 }, ]", &json!({ "remove": 0 })), "layer = [  ]");
+    assert_eq!(edited("remove", "layer = [ { a = 1 }, ]", &["0"]).unwrap(), "layer = [  ]");
 }
 
 #[test]
@@ -241,15 +219,15 @@ fn values_are_read_in_the_order_of_the_text_with_the_lines_of_the_layers() {
 
 #[test]
 fn what_cannot_be_edited_is_an_error() {
-    let error = |text: &str, change: serde_json::Value| edit(&request(text, &change)).unwrap_err();
+    let error = |act: &str, text: &str, word: &str| edited(act, text, &[word]).unwrap_err();
     assert!(matches!(read("a = ["), Err(TextError::Toml(_))));
-    assert!(matches!(error("a = [", json!({ "copy": 0 })), TextError::Toml(_)));
-    assert!(matches!(error(FORMS, json!({ "copy": 3 })), TextError::NoLayer(3)));
-    assert!(matches!(error(FORMS, json!({ "remove": 3 })), TextError::NoLayer(3)));
-    assert!(matches!(error("a = 1\n", json!({ "remove": 0 })), TextError::NoLayer(0)));
-    let no_table = error(FORMS, json!({ "set": [{ "path": ["layer", 0, "repeat", "rows"], "value": "2" }] }));
+    assert!(matches!(error("copy", "a = [", "0"), TextError::Toml(_)));
+    assert!(matches!(error("copy", FORMS, "3"), TextError::NoLayer(3)));
+    assert!(matches!(error("remove", FORMS, "3"), TextError::NoLayer(3)));
+    assert!(matches!(error("remove", "a = 1\n", "0"), TextError::NoLayer(0)));
+    let no_table = set(FORMS, &[change("layer.0.repeat.rows", "2", "")]).unwrap_err();
     assert_eq!(no_table.to_string(), "the text has no table layer.0.repeat: write it first");
-    assert!(matches!(error("", json!({ "turn": 1 })), TextError::Request));
-    assert!(matches!(error("", json!({ "copy": "one" })), TextError::Request));
+    assert!(matches!(error("turn", "", "1"), TextError::Request));
+    assert!(matches!(error("copy", "", "one"), TextError::Request));
     assert!(matches!(edit("set\0a = 1\0a\0b"), Err(TextError::Request)));
 }
