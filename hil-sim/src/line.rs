@@ -179,13 +179,6 @@ mod tests {
         arrivals
     }
 
-    #[test]
-    fn two_megabaud_are_five_bytes_in_a_tick_of_forty_kilohertz() {
-        let arrivals = arrivals(&mut Line::new(2_000_000, TICK_HZ).unwrap(), 1000);
-        let expected: Vec<u64> = (0..1000).map(|number| number / 5 + 1).collect();
-        assert_eq!(arrivals, expected);
-    }
-
     proptest! {
         #[test]
         fn a_byte_takes_ten_bit_times_at_any_rate(baud in 300..6_000_000_u32, tick_hz in 1000..100_000_u32) {
@@ -195,18 +188,6 @@ mod tests {
                 let expected = (10 * (number as u64 + 1) * u64::from(tick_hz)).div_ceil(u64::from(baud));
                 prop_assert_eq!(tick, expected);
             }
-        }
-
-        #[test]
-        fn bytes_that_are_fed_without_a_gap_keep_the_line_full(baud in 9600..3_000_000_u32) {
-            let mut line = Line::new(baud, TICK_HZ).unwrap();
-            for _ in 0..10_000 {
-                if line.queued() < 64 {
-                    line.send(&[0x55; 128]);
-                }
-                line.tick();
-            }
-            prop_assert_eq!(line.bytes().delivered, u64::from(baud) * 10_000 / (10 * u64::from(TICK_HZ)));
         }
     }
 

@@ -134,13 +134,6 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_nothing_was_set_of_changes_nothing() {
-        let mut arrived = Vec::new();
-        LineNoise::new(1).pass(b"hello", &mut arrived);
-        assert_eq!(arrived, b"hello");
-    }
-
-    #[test]
     fn a_share_that_is_none_is_refused_by_name() {
         let error = LineNoise::new(1).set(NoiseConfig { lost_share: 1.5, ..NoiseConfig::default() }).unwrap_err();
         assert_eq!(error.to_string(), "line lost_share must be from 0 to 1, found 1.5");

@@ -91,22 +91,32 @@ fn a_short_circuit_is_reported_as_long_as_it_lasts() {
 const ZERO_WITHIN_NS: u64 = 30_000;
 
 /// The amplifier's enable.
-struct Wire(bool);
+struct Enable<'a> {
+    chip: &'a Ad5761rChip,
+    /// Time and output of the DAC when it fell.
+    fell: Option<(u64, f64)>,
+}
 
-impl ErrorType for Wire {
+impl ErrorType for Enable<'_> {
     type Error = Infallible;
 }
 
-impl OutputPin for Wire {
+impl OutputPin for Enable<'_> {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0 = false;
+        self.fell = Some((self.chip.now_ns(), self.chip.output_v()));
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0 = true;
-        Ok(())
+        panic!("enabled")
     }
+}
+
+/// Puts the output to zero, and returns when the enable fell.
+fn zero_output(chip: &Ad5761rChip) -> Option<(u64, f64)> {
+    let mut enable = Enable { chip, fell: None };
+    ad5761r::zero_output(&mut enable, &mut chip.sync_pin(), &mut chip.clear_pin());
+    enable.fell
 }
 
 /// What happens on the DAC's wires in a period of the tick.
@@ -175,44 +185,18 @@ fn send_rest(chip: &Ad5761rChip, to_come: &[(u64, Edge)]) {
     }
 }
 
+/// The amplifier is disabled before the frame in flight is put out.
 #[test]
-fn a_panic_at_any_phase_of_a_frame_puts_the_dac_at_zero_within_30_us() {
+fn a_panic_at_any_phase_of_a_frame_disables_the_amplifier_and_puts_the_dac_at_zero_within_30_us() {
     for phase in phases() {
         let (chip, to_come) = in_mid_frame(phase.0, phase.1);
         let (from_ns, from_v) = (chip.now_ns(), chip.output_v());
         assert!(from_v.abs() > 9.0, "{phase:?}");
-        let mut enable = Wire(true);
-        ad5761r::zero_output(&mut enable, &mut chip.sync_pin(), &mut chip.clear_pin());
+        assert_eq!(zero_output(&chip), Some((from_ns, from_v)), "{phase:?}");
         send_rest(&chip, &to_come);
         wait_until(&chip, from_ns + 100_000);
         assert!(chip.output_v().abs() < f64::EPSILON, "{phase:?}: {} V", chip.output_v());
         assert!(chip.settled_at_ns() - from_ns <= ZERO_WITHIN_NS, "{phase:?}: {} ns", chip.settled_at_ns() - from_ns);
-        assert!(!enable.0);
-    }
-}
-
-/// The amplifier is disabled before the frame in flight is put out.
-#[test]
-fn the_amplifier_is_disabled_before_the_dac_changes() {
-    struct Enable<'a>(&'a Ad5761rChip, Option<(u64, f64)>);
-    impl ErrorType for Enable<'_> {
-        type Error = Infallible;
-    }
-    impl OutputPin for Enable<'_> {
-        fn set_low(&mut self) -> Result<(), Infallible> {
-            self.1 = Some((self.0.now_ns(), self.0.output_v()));
-            Ok(())
-        }
-        fn set_high(&mut self) -> Result<(), Infallible> {
-            panic!("enabled")
-        }
-    }
-    for phase in phases() {
-        let (chip, _) = in_mid_frame(phase.0, phase.1);
-        let at_panic = (chip.now_ns(), chip.output_v());
-        let mut enable = Enable(&chip, None);
-        ad5761r::zero_output(&mut enable, &mut chip.sync_pin(), &mut chip.clear_pin());
-        assert_eq!(enable.1, Some(at_panic), "{phase:?}");
     }
 }
 
@@ -248,7 +232,7 @@ fn a_reset_at_any_phase_of_a_frame_leaves_the_dac_at_zero_once_the_board_starts(
             // The clock's wire floats, too.
             send_rest(&chip, &to_come);
             let from_ns = chip.now_ns();
-            ad5761r::zero_output(&mut Wire(false), &mut chip.sync_pin(), &mut chip.clear_pin());
+            zero_output(&chip);
             assert!(chip.output_v().abs() < f64::EPSILON, "{phase:?}, {clear_first}: {} V", chip.output_v());
             assert!(chip.settled_at_ns() <= from_ns + ZERO_WITHIN_NS, "{phase:?}, {clear_first}");
             dac(&chip).prepare().unwrap();
@@ -280,32 +264,6 @@ fn a_dac_whose_clear_is_low_already_is_set_to_zero() {
     chip.set_clear(false);
     tick_frame(&chip, 30_000);
     assert!(chip.output_v() > 9.0);
-    ad5761r::zero_output(&mut Wire(true), &mut chip.sync_pin(), &mut chip.clear_pin());
+    zero_output(&chip);
     assert!(chip.output_v().abs() < f64::EPSILON);
-}
-
-#[test]
-fn a_frame_that_is_cut_short_is_ignored_and_of_a_longer_one_the_last_24_bits_count() {
-    let code = |bits: &[bool]| {
-        let chip = Ad5761rChip::new();
-        dac(&chip).prepare().unwrap();
-        chip.set_sync(false);
-        for bit in bits {
-            chip.clock(*bit);
-        }
-        chip.set_sync(true);
-        chip.output_v()
-    };
-    let frame: Vec<bool> = period(30_000)
-        .into_iter()
-        .filter_map(|(_, edge)| if let Edge::Clock(bit) = edge { Some(bit) } else { None })
-        .collect();
-    assert!((code(&frame) - 30_000.0 * STEP_V).abs() < 1e-9);
-    for cut in 0..24 {
-        assert!(code(&frame[..cut]).abs() < f64::EPSILON, "{cut} clocks");
-    }
-    for extra in 1..50 {
-        let longer: Vec<bool> = vec![true; extra].into_iter().chain(frame.iter().copied()).collect();
-        assert!((code(&longer) - 30_000.0 * STEP_V).abs() < 1e-9, "{extra} more clocks");
-    }
 }

@@ -1,6 +1,5 @@
 //! The tests of the crate as a whole, one program for all of them.
 
-mod amplifier;
 mod chips;
 mod dac;
 mod live;

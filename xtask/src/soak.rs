@@ -49,8 +49,7 @@ const PARTS: [Part; 10] = [
     },
     Part {
         name: "pico",
-        what: "the Pico's image: a hundred random instructions of a play for each way to end it, power cuts at each flash operation, \
-               a grating under long strokes",
+        what: "the Pico's image: a hundred random instructions of a play for each way to end it",
         needs: &[M0_PLUS_TARGET, Need::Node, Need::Npm],
         run: pico,
     },

@@ -2,7 +2,6 @@
 //! scenes that they make.
 
 mod golden;
-mod parsers;
 mod samples;
 mod scene;
 mod support;

@@ -123,13 +123,6 @@ fn the_largest_friction_is_rounded_up() {
 }
 
 #[test]
-fn a_scene_without_layers_is_read() {
-    let bytes = support::header().write(0, 0);
-    let scene = Scene::parse(&bytes).unwrap();
-    assert_eq!((*scene.header(), scene.record_count()), (support::header(), 0));
-}
-
-#[test]
 fn unknown_flags_and_carriers_are_refused() {
     for flags in 64..=u8::MAX {
         assert_eq!(refused(&changed(3, flags)), SceneError::UnknownFlags(flags));

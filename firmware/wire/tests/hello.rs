@@ -6,7 +6,6 @@ use crate::support;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{
     BoardKind, BoardLimits, Core, HELLO_LEN, HELLO_MAX_LEN, Hello, HelloError, Mismatch, PROTOCOL_MAJOR, ResetCause,
-    notice,
 };
 use support::hex::from_hex;
 use support::samples::hello;
@@ -89,32 +88,13 @@ fn a_hello_of_the_future_is_read() {
     assert!(!read.board.is_simulated());
 }
 
-/// With the defaults for limits that a board omits, no scene can be played.
+/// With the defaults for limits that a board omits, no scene can be played. `protocol` holds them.
 #[test]
 fn limits_that_are_left_out_allow_nothing() {
     let mut bytes = hello().write()[..LIMITS_AT].to_vec();
     bytes[LIMITS_LEN_AT] = 0;
-    let limits = Hello::parse(&bytes).unwrap().limits;
-    assert_eq!(limits, BoardLimits::UNSTATED);
-    assert_eq!((limits.bitmap_pool_bytes, limits.records_max, limits.receive_window_bytes), (0, 0, 192));
-    assert_eq!((limits.voltage_max_v_peak, limits.full_scale_v_peak), (0.0, 0.0));
-    assert_eq!((limits.current_max_a_rms, limits.current_max_a_peak), (0.0, 0.0));
-    assert_eq!((limits.edge_time_constant_s, limits.touch_report_period_s), (0.0, 0.0));
-    assert!(limits.electrode_capacitance_max_f.is_infinite());
-    assert_eq!(limits.tick_cycles_max, 0);
-    assert!(limits.series_resistance_ohm.is_infinite());
-    assert_eq!(Hello::parse(&bytes).unwrap().notices, 0);
-}
-
-/// Between two limits: a host that does not know them skips them by their tag.
-#[test]
-fn notices_are_a_value_among_the_limits() {
-    let with = Hello { notices: notice::OPTION_BYTES, ..hello() };
-    assert_eq!(Hello::parse(&with.write()), Ok(with));
-    let at = HELLO_LEN - 12;
-    assert_eq!(with.write()[at..at + 3], [12, 1, 1]);
-    assert_eq!(with.write()[..at + 2], hello().write()[..at + 2]);
-    assert_eq!(with.write()[at + 3..], hello().write()[at + 3..]);
+    let hello = Hello::parse(&bytes).unwrap();
+    assert_eq!((hello.limits, hello.notices), (BoardLimits::UNSTATED, 0));
 }
 
 /// An omitted limit has its default value; the others have the values sent.

@@ -8,7 +8,7 @@ use std::fmt::{Debug, Display, Write};
 use std::path::Path;
 
 use frixel_testkit::golden;
-use frixel_wire::fault::{Fault, Flags, State};
+use frixel_wire::fault::{Fault, Flags};
 use frixel_wire::hello::{Hello, notice};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use support::samples;
@@ -39,18 +39,6 @@ fn sentences_are_those_of_the_golden_file() {
     golden::hold(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/sentences.txt"), &text);
     let sentences: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(sentences.iter().collect::<BTreeSet<_>>().len(), sentences.len(), "no two are alike");
-}
-
-#[test]
-fn numbers_are_the_ones_of_the_wire() {
-    assert!(State::try_from(4).unwrap_err().to_string().contains('4'));
-    for state in samples::STATES {
-        assert_eq!(State::try_from(state.number()), Ok(state));
-    }
-    assert!(Fault::try_from(0).is_err());
-    for number in 1..=u8::MAX {
-        assert_eq!(Fault::try_from(number).unwrap().number(), number);
-    }
 }
 
 /// Every flag has a sentence, any two are combined into one text, and unknown bits are reported.

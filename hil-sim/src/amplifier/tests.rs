@@ -136,19 +136,6 @@ fn an_offset_is_there_while_the_amplifier_is_enabled() {
 }
 
 #[test]
-fn disabled_it_decays_to_exactly_zero() {
-    let mut amplifier = amplifier(AmplifierConfig::default());
-    for _ in 0..100 {
-        amplifier.tick(drive(32_767));
-    }
-    let off = Drive { dac_code: DacCode::MAX, amplifier_enable: false };
-    let first_v = amplifier.tick(off).end_v;
-    assert!((first_v - 200.0 * libm::exp(-1.25)).abs() < 1e-6, "{first_v}");
-    let last = (0..40).map(|_| amplifier.tick(off)).last().unwrap();
-    assert_eq!((last.end_v, last.mean_square_v2), (0.0, 0.0));
-}
-
-#[test]
 fn values_out_of_range_are_refused_by_name() {
     for (config, name) in [
         (AmplifierConfig { gain: 0.0, ..AmplifierConfig::default() }, "amplifier gain"),

@@ -84,10 +84,4 @@ mod tests {
         leakage.lift();
         assert!(leakage.tick(&held(100.0)) > 9.6e3);
     }
-
-    #[test]
-    fn without_leakage_the_gap_has_the_electrodes_voltage() {
-        let mut leakage = Leakage::new(0.0, TICK_HZ);
-        assert!((0..100).all(|_| leakage.tick(&held(3.0)).to_bits() == 9.0_f64.to_bits()));
-    }
 }

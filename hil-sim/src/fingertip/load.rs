@@ -101,10 +101,4 @@ mod tests {
         assert!(loads_n(0.0, 3, 1).iter().all(|load_n| load_n.to_bits() == 0.53_f64.to_bits()));
         assert!(loads_n(10.0, 3, 60).iter().all(|load_n| *load_n >= 0.053));
     }
-
-    #[test]
-    fn the_wander_comes_from_the_seed() {
-        assert_eq!(loads_n(22e-3, 3, 1), loads_n(22e-3, 3, 1));
-        assert_ne!(loads_n(22e-3, 3, 1), loads_n(22e-3, 4, 1));
-    }
 }

@@ -116,8 +116,7 @@ pub fn one_minus_exp(a: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Sliding, SlipStep, one_minus_exp};
-    use crate::fingertip::config::RELAXATION_LENGTH_M;
+    use super::one_minus_exp;
 
     #[test]
     fn the_quotient_is_the_exponential() {
@@ -126,27 +125,5 @@ mod tests {
             let expected = -libm::expm1(-a);
             assert!((one_minus_exp(a) - expected).abs() <= 1e-11 * expected, "{a}");
         }
-    }
-
-    #[test]
-    fn friction_turns_with_the_motion_over_the_relaxation_length() {
-        let mut sliding = Sliding::new(RELAXATION_LENGTH_M, true, 40_000);
-        let (mut friction_n, step_m) = ([0.0; 2], 1e-7);
-        let mut x_m = 0.0;
-        let mut slide = |lengths: f64, sign: f64| {
-            let mut along_n = 0.0;
-            for _ in 0..(lengths * RELAXATION_LENGTH_M / step_m) as u32 {
-                x_m += sign * step_m;
-                let (share, direction) = sliding.to([x_m, 0.02], step_m * 40_000.0);
-                along_n = SlipStep { share, direction, electric_gain: 1.0 }.advance(&mut friction_n, 0.25);
-            }
-            along_n
-        };
-        // Dahl: 1 - e^-s from rest, and 1 - 2 e^-s after a turn.
-        assert!((slide(1.0, 1.0) - 0.25 * 0.632).abs() < 2e-3);
-        assert!((slide(20.0, 1.0) - 0.25).abs() < 1e-6);
-        assert!((slide(0.1, -1.0) + 0.25 * 0.81).abs() < 3e-3, "the skin springs back at first");
-        assert!((slide(0.9, -1.0) - 0.25 * 0.264).abs() < 3e-3);
-        assert!((slide(20.0, -1.0) - 0.25).abs() < 1e-6);
     }
 }

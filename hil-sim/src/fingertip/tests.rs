@@ -127,18 +127,6 @@ fn a_still_finger_keeps_the_friction_it_has() {
 }
 
 #[test]
-fn a_change_of_speed_takes_effect_at_once() {
-    let mut slide = Slide::new(FingertipConfig::IDEAL, 1);
-    let mut rise_n = |speed_m_per_s| {
-        slide.fingertip.lift();
-        slide.tick(10_000.0, speed_m_per_s).electric_friction_n
-    };
-    let slow_n = rise_n(0.001);
-    assert!(rise_n(0.1) > 50.0 * slow_n);
-    assert_eq!(rise_n(0.001), slow_n);
-}
-
-#[test]
 fn a_lifted_finger_feels_nothing_and_starts_afresh() {
     for (config, natural_n) in [(FingertipConfig::IDEAL, 0.25), (FingertipConfig::REALISTIC, 0.0)] {
         let mut slide = Slide::new(config, 1);
@@ -239,34 +227,6 @@ fn friction_follows_the_load_and_the_coefficients_power_law() {
         let gain = electric_n / profile.electric_friction_n(50.0);
         assert!((last.slip.electric_gain / gain - 1.0).abs() < 1e-9, "{exponent}: {last:?}");
     }
-}
-
-#[test]
-fn a_load_that_wanders_by_22_mn_is_11_mn_of_friction() {
-    let frictions_n = natural_n(with(|config| config.load_sd_n = 22e-3), 3, 0.05, 120);
-    let mean_n = frictions_n.iter().sum::<f64>() / frictions_n.len() as f64;
-    let square = frictions_n.iter().map(|friction_n| (friction_n - mean_n).powi(2)).sum::<f64>();
-    let sd_n = (square / frictions_n.len() as f64).sqrt();
-    assert!((sd_n / 11e-3 - 1.0).abs() < 0.15, "{sd_n}");
-}
-
-#[test]
-fn leaked_charge_costs_a_slow_carrier_its_force() {
-    let friction_n = |leakage_hz: f64, half_period_ticks: u32| {
-        let mut slide = Slide::new(with(|config| config.leakage_hz = leakage_hz), 1);
-        let felt_n = (0..40_000_u32).map(|tick| {
-            slide.x_m += 1e-6;
-            let mean_v = if (tick / half_period_ticks).is_multiple_of(2) { 100.0 } else { -100.0 };
-            let output = Output { mean_v, variance_v2: 0.0, mean_square_v2: 1e4, end_v: mean_v };
-            let finger = FingerState { x_m: slide.x_m, y_m: 0.03, speed_m_per_s: 0.04 };
-            slide.fingertip.slide(&output, &finger, None).electric_friction_n
-        });
-        felt_n.skip(32_000).sum::<f64>() / 8000.0
-    };
-    let whole_n = friction_n(0.0, 20);
-    // The mean of the example finger's friction over a half period of `V e^(-t/tau)`, tau being 1/(2 pi 250 Hz).
-    assert!((friction_n(250.0, 20) / whole_n - 0.9648).abs() < 0.002, "1 kHz: {}", friction_n(250.0, 20) / whole_n);
-    assert!((friction_n(250.0, 400) / whole_n - 0.1403).abs() < 0.005, "50 Hz: {}", friction_n(250.0, 400) / whole_n);
 }
 
 #[test]

@@ -64,29 +64,3 @@ impl Port for TerminalPort {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::fs::OpenOptions;
-    use std::io::Read;
-    use std::thread;
-
-    use super::*;
-
-    #[test]
-    fn the_last_words_of_the_board_are_there_until_the_client_has_gone() {
-        let mut port = TerminalPort::open().unwrap();
-        let mut client = OpenOptions::new().read(true).write(true).open(port.path()).unwrap();
-        let board = thread::spawn(move || {
-            port.write(b"STOP");
-            port.end();
-        });
-        sleep(20 * WAIT);
-        assert!(!board.is_finished());
-        let mut words = [0; 4];
-        client.read_exact(&mut words).unwrap();
-        assert_eq!(&words, b"STOP");
-        drop(client);
-        board.join().unwrap();
-    }
-}

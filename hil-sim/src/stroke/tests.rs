@@ -78,13 +78,6 @@ fn minimum_jerk_rests_at_its_ends_and_is_fastest_in_the_middle() {
 }
 
 #[test]
-fn a_still_finger_stays() {
-    let stroke = Stroke::still(LEFT, 2.0).unwrap();
-    assert_eq!(at(&stroke, 1.9), FingerState { x_m: LEFT.x_m, y_m: LEFT.y_m, speed_m_per_s: 0.0 });
-    assert_eq!(stroke.duration_s(), 2.0);
-}
-
-#[test]
 fn a_loop_repeats_with_a_pause_for_ever() {
     let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap().looped(0.25).unwrap();
     assert_eq!(stroke.duration_s(), f64::INFINITY);

@@ -95,16 +95,6 @@ fn a_one_shot_that_hangs_does_not_hold_the_enable() {
     assert!(bench.with(|rig| rig.zero_since()).is_some(), "the enable is low, and the code zero");
 }
 
-#[test]
-fn a_switch_that_is_welded_from_power_on_does_not_arm() {
-    let Some(image) = emulator::pico_image() else { return };
-    let bench = Bench::just_on(&image);
-    bench.with(|rig| rig.broken.arm_switch = Some(true));
-    bench.pass(Duration::from_millis(60));
-    let refused = try_to_play(&mut bench.connect()).unwrap_err();
-    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::ArmSwitch, .. }), "{refused}");
-}
-
 /// A DAC without supply is a fault when the board arms; once powered, it plays.
 #[test]
 fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
@@ -124,20 +114,6 @@ fn a_dac_that_is_powered_late_is_missed_at_first_and_plays_then() {
     host.clear_fault().unwrap();
     press_again(&bench);
     bench.start(&mut host, CONSTANT);
-}
-
-/// A DAC that never answers, as with a broken wire.
-#[test]
-fn a_dac_that_does_not_answer_is_a_fault() {
-    let Some(image) = emulator::pico_image() else { return };
-    let bench = Bench::new(&image);
-    bench.with(|rig: &mut PicoRig| rig.dac().connect_sdo(false));
-    let mut host = bench.connect();
-    let _ = try_to_play(&mut host);
-    drop(host);
-    let hello = *bench.connect().hello();
-    assert_eq!((hello.state, hello.last_fault), (State::Faulted, Some(Fault::Dac)));
-    assert!(bench.with(|rig| rig.zero_since()).is_some());
 }
 
 /// Lets the arm switch go, and presses it again.

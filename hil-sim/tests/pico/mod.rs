@@ -5,7 +5,6 @@
 mod bench;
 mod broken_parts;
 mod endings;
-mod felt;
 mod frame;
 mod parity;
 mod play;

@@ -100,23 +100,6 @@ mod tests {
         at(Direction { angle_turns, along_n: 1.0, against_n: 0.0 }, velocity_m_per_s)
     }
 
-    #[test]
-    fn a_finger_feels_the_cosine_of_the_angle_to_the_axis() {
-        for (velocity, expected) in [
-            ([0.1, 0.0], 1.0),
-            ([-0.1, 0.0], 0.0),
-            ([0.0, 0.1], 0.5),
-            ([0.0, -3.0], 0.5),
-            ([0.06, 0.08], 0.8),
-            ([-0.06, 0.08], 0.2),
-        ] {
-            assert!((part(0.0, velocity) - expected).abs() < 1e-6, "{velocity:?}: {}", part(0.0, velocity));
-        }
-        // An axis that points down.
-        assert!((part(0.25, [0.0, 0.1]) - 1.0).abs() < 1e-6);
-        assert!((part(-0.75, [0.0, -0.1])).abs() < 1e-6);
-    }
-
     /// A reversal passes through the mean of both, in steps proportional to those of the velocity.
     #[test]
     fn a_slow_finger_feels_the_mean_of_both() {

@@ -106,9 +106,9 @@ struct Found {
     acceleration_m_per_s2: f64,
 }
 
-fn found(reconstruction: Reconstruction, screen_m: [f64; 2], median_m_per_s: f64) -> Found {
+fn found(reconstruction: Reconstruction, median_m_per_s: f64) -> Found {
     let whole = |seed| {
-        let mut touches = touches(reconstruction, screen_m, Some(median_m_per_s), seed);
+        let mut touches = touches(reconstruction, LARGE_M, Some(median_m_per_s), seed);
         touches.pop();
         touches
     };
@@ -125,9 +125,9 @@ fn found(reconstruction: Reconstruction, screen_m: [f64; 2], median_m_per_s: f64
 
 /// Checks the medians of touches against the recorded ones. The recordings have no quartiles of speed percentiles and
 /// durations, so a tolerance of a tenth of the recorded range is allowed.
-fn check(reconstruction: Reconstruction, screen_m: [f64; 2], recorded: &Recorded, whole_duration: bool) {
+fn check(reconstruction: Reconstruction, recorded: &Recorded) {
     let Recorded { median_m_per_s, duration_s, fast_over_median: [least, most], .. } = *recorded;
-    let found = found(reconstruction, screen_m, median_m_per_s);
+    let found = found(reconstruction, median_m_per_s);
     let [lower, upper] =
         if reconstruction == Reconstruction::Smooth { recorded.smooth_m_per_s2 } else { recorded.rough_m_per_s2 };
     let line = format!(
@@ -138,27 +138,15 @@ fn check(reconstruction: Reconstruction, screen_m: [f64; 2], recorded: &Recorded
     assert!((found.median_m_per_s / median_m_per_s - 1.0).abs() < 0.05, "{line}");
     assert!((lower..=upper).contains(&found.acceleration_m_per_s2), "{line}");
     assert!((0.9 * least..=1.1 * most).contains(&found.fast_over_median), "{line}");
-    let duration = found.duration_s / duration_s;
-    assert!(if whole_duration { (0.9..1.1).contains(&duration) } else { duration < 1.1 }, "{line}");
+    assert!((0.9..1.1).contains(&(found.duration_s / duration_s)), "{line}");
 }
 
 #[test]
 fn touches_have_the_statistics_of_recorded_ones() {
     for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
         for recorded in &RECORDED {
-            check(reconstruction, LARGE_M, recorded, true);
+            check(reconstruction, recorded);
         }
-    }
-}
-
-/// On a small screen, only touches at 200 mm/s and above are too long, and end earlier; their acceleration is the same.
-#[test]
-fn touches_have_the_statistics_of_recorded_ones_on_a_small_screen() {
-    for reconstruction in [Reconstruction::Smooth, Reconstruction::Rough] {
-        let [slow, middle, fast, _] = &RECORDED;
-        check(reconstruction, SMALL_M, slow, true);
-        check(reconstruction, SMALL_M, middle, true);
-        check(reconstruction, SMALL_M, fast, false);
     }
 }
 
@@ -231,14 +219,6 @@ fn acceleration_from_8_hz(touch: &[FingerState]) -> f64 {
 }
 
 #[test]
-fn the_rough_hand_makes_the_touches_of_the_smooth_one() {
-    let durations = |reconstruction| -> Vec<usize> {
-        touches(reconstruction, LARGE_M, Some(0.05), 5).iter().map(Vec::len).collect()
-    };
-    assert_eq!(durations(Reconstruction::Smooth), durations(Reconstruction::Rough));
-}
-
-#[test]
 fn a_human_stroke_comes_from_its_seed_and_has_the_speed_of_its_places() {
     let stroke = |seed| Stroke::human(0.12, 0.08, 5.0, Some(0.1), seed).unwrap();
     let at = |seed, t_s| stroke(seed).at(t_s).unwrap();
@@ -255,15 +235,4 @@ fn a_human_stroke_comes_from_its_seed_and_has_the_speed_of_its_places() {
     );
     assert_eq!(message(1.0, Some(-0.1)), "stroke: median speed in m/s must be finite and above 0, found -0.1");
     assert_eq!(message(1.0, Some(10.5)), "stroke: median speed in m/s must be at most 10, found 10.5");
-}
-
-/// A finger that is far too fast for a screen, or hardly moves, lands and lifts all the same.
-#[test]
-fn any_screen_and_speed_make_a_stroke() {
-    for (width_m, height_m) in [(1e-3, 1e-3), (0.12, 1e-3), (10.0, 10.0)] {
-        for median_m_per_s in [1e-9, 0.1, 10.0] {
-            let stroke = Stroke::human_rough(width_m, height_m, 3.0, Some(median_m_per_s), 1).unwrap();
-            assert!((0..3000).any(|ms| stroke.at(1e-3 * f64::from(ms)).is_some()), "{width_m}, {median_m_per_s}");
-        }
-    }
 }
