@@ -46,7 +46,7 @@ fn changed_recordings_scenarios_and_plans_are_refused_or_read() {
 }
 
 #[test]
-fn changed_bytes_are_refused_or_written_as_they_are() {
+fn changed_bytes_are_refused_or_can_be_written_back() {
     for (_, scene) in compiled_scenes() {
         scene_bytes(&scene);
         for seed in 0..20 * COPIES {

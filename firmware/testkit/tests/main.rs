@@ -2,6 +2,7 @@
 //! scenes that they make.
 
 mod golden;
+mod parsers;
 mod samples;
 mod scene;
 mod support;

@@ -37,18 +37,6 @@ fn assert_speed_is_the_rate_of_the_place(stroke: &Stroke, from_s: f64, to_s: f64
 }
 
 #[test]
-fn constant_speed_is_constant_and_ends_where_it_should() {
-    let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap();
-    assert_close(stroke.duration_s(), 1.0);
-    for (t_s, x_m, y_m) in [(0.0, 0.01, 0.02), (0.25, 0.03, 0.035), (1.0, 0.09, 0.08)] {
-        let state = at(&stroke, t_s);
-        assert_close(state.x_m, x_m);
-        assert_close(state.y_m, y_m);
-        assert_eq!(state.speed_m_per_s, 0.1);
-    }
-}
-
-#[test]
 fn the_finger_is_up_before_the_start_and_after_the_end() {
     let stroke = Stroke::constant_speed(LEFT, RIGHT, 0.1).unwrap();
     let rows = Stroke::through(&[(0.5, Some(LEFT)), (1.0, Some(RIGHT))]).unwrap();
