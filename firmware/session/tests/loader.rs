@@ -1,7 +1,7 @@
 //! The board's loader: its numbered refusals, and what any bytes make of it and the tick.
 
 use crate::support::{HEADER, TestBoard, constant, scene_with_points};
-use frixel_layers::{Header, Layer, RECORD_LEN, Record, Region, Scene};
+use frixel_layers::{Header, Record, Scene};
 use frixel_testkit::samples::{POINTS, sample_records, with_picture};
 use frixel_wire::message::Command;
 use frixel_wire::scene::bitmap_crc32;
@@ -20,7 +20,7 @@ fn records() -> Vec<Record> {
 #[cfg(all(feature = "bitmap", feature = "stream"))]
 mod whole {
     use crate::support::record;
-    use frixel_layers::{Point, Speed};
+    use frixel_layers::{Layer, Point, RECORD_LEN, Region, Speed};
     use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 
     use super::*;

@@ -4,7 +4,9 @@
 use crate::support::bitmap;
 use crate::support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
 use frixel_control::{Board, Order};
-use frixel_layers::{Constant, HEADER_LEN, Header, Layer, RECORD_LEN, Record, Region, Scene};
+use frixel_layers::{Constant, HEADER_LEN, Header, Layer, RECORD_LEN, Scene};
+#[cfg(feature = "bitmap")]
+use frixel_layers::{Record, Region};
 use frixel_session::{Touch, table_rows};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
