@@ -3,9 +3,8 @@
 use std::time::Duration;
 
 use frixel_driver::{DeviceError, ignore_progress};
-use frixel_hil_sim::emulated::{BrokenInputs, PicoRig};
+use frixel_hil_sim::emulated::BrokenInputs;
 use frixel_wire::fault::{Fault, State};
-use frixel_wire::message::Refusal;
 
 use super::bench::{Bench, CONSTANT, Host, TICK, program};
 use crate::emulator;

@@ -51,6 +51,20 @@ fn after_power_on_the_board_says_hello_and_its_output_is_zero() {
     assert!(frames(&events).len() > 1000);
 }
 
+#[test]
+fn telemetry_comes_a_thousand_times_a_second() {
+    let Some(image) = emulator::pico_image() else { return };
+    let mut host = Bench::new(&image).play(CONSTANT);
+    let period_ticks = telemetry_period_ticks(BOARD.tick_hz, TELEMETRY_MAX_HZ);
+    let refused = host.subscribe(period_ticks - 1).unwrap_err();
+    assert!(matches!(refused, DeviceError::Refused { refusal: Refusal::TelemetryTooFast { .. }, .. }), "{refused}");
+    host.subscribe(period_ticks).unwrap();
+    let mut messages = 0;
+    let mut count = |event| messages += u32::from(matches!(event, Event::Telemetry(_)));
+    host.wait(Duration::from_millis(100), &mut count).unwrap();
+    assert!((99..=101).contains(&messages), "{messages}");
+}
+
 /// A board that has stored no limits was never measured.
 #[test]
 fn a_board_that_was_never_brought_up_drives_ten_volts_at_most() {
