@@ -84,9 +84,9 @@ pub(crate) fn error(error: &HostError, entry: &str) -> Value {
     json!({ "error": error.to_string(), "problems": problems, "isLinkLost": error.is_link_lost() })
 }
 
-/// A board that was connected to: `driving`, what Arm drives.
+/// A board that was connected to: `driving`, what Arm drives, and `tickHz`, its ticks a second.
 pub(crate) fn board(hello: &Hello) -> Value {
-    json!({ "driving": driven_board(hello) })
+    json!({ "driving": driven_board(hello), "tickHz": hello.tick_hz })
 }
 
 /// The label of Arm: what it drives, with the board's notices, which a person reads before the press.

@@ -1,6 +1,6 @@
 //! The results of `frixel check` for a scene.
 
-use frixel_felt::check::SceneCheck;
+use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{RigConfig, WorldOptions};
 use frixel_play::{SimulationError, TO_THE_END, board_costs, judge};
@@ -53,14 +53,15 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         Judgement::default()
     };
     let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
-    let draft = if program.is_draft() { "  draft            clamped: a board refuses this scene\n" } else { "" };
+    let draft = program.is_draft().then(|| ("draft", "clamped: a board refuses this scene".to_owned()));
+    let report: Vec<feel::Line> = draft.into_iter().chain(check.lines(true)).collect();
     Ok(json!({
         "ok": !program.is_draft(),
         "isDraft": program.is_draft(),
         "problems": problems,
         "screen": screen(&scene),
         "layers": layers(&scene, &request.entry, &program, &check.judgement),
-        "report": format!("{draft}{}", check.summary(true)),
+        "report": report,
         "lowN": check.targets.least_n,
         "highN": check.targets.most_n,
         "reachN": check.reach.total_max_n,

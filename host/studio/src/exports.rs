@@ -11,6 +11,7 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use frixel_felt::judge::{WEBER_FRACTION, weber_steps};
+use frixel_hil_sim::Board;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::telemetry_period_ticks;
 use serde_json::{Value, json};
@@ -90,10 +91,14 @@ pub extern "C" fn map() -> i32 {
     respond_bytes(|| crate::map::map(&request()?))
 }
 
-/// The names of the numbers in answers that are no JSON, in their order: `mapHead`, `frameHead` and `frameColumns`.
+/// The names of the numbers in answers that are no JSON, in their order: `mapHead`, `frameHead` and `frameColumns`; and
+/// `tickHz`, the simulated board's ticks a second.
 #[unsafe(no_mangle)]
 pub extern "C" fn layouts() -> i32 {
-    respond(|| Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS })))
+    respond(|| {
+        let tick_hz = Board::SIMULATOR.tick_hz;
+        Ok(json!({ "mapHead": MAP_HEAD, "frameHead": FRAME_HEAD, "frameColumns": COLUMNS, "tickHz": tick_hz }))
+    })
 }
 
 /// Constants of perception for the page: `weberStepsPerE`, Weber steps of a change by a factor of e, and `weberStep`, a
@@ -242,7 +247,7 @@ pub extern "C" fn simulator_run(ticks: u32, is_alive: u32) -> i32 {
 
 /// Connects to the board at the other end of the stream. Suspends.
 ///
-/// The answer has `driving`, a sentence.
+/// The answer has `driving`, a sentence, and `tickHz`.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_connect() -> i32 {
     respond(|| {

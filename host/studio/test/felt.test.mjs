@@ -43,8 +43,8 @@ async function soundOf(speedMmPerS) {
   let isOver = false;
   const { engine } = studioPage;
   const feel = engine.onAudio;
-  engine.onAudio = (samples, _tick, slowness) => {
-    processor.port.onmessage({ data: { samples, slowness } });
+  engine.onAudio = (samples, _tick, samplesPerS) => {
+    processor.port.onmessage({ data: { samples, samplesPerS } });
     for (let at = 0; !isOver && at < (samples.length * RATE_HZ) / 40_000; at += BLOCK) {
       const block = new Float32Array(BLOCK);
       processor.process([], [[block]]);

@@ -131,7 +131,7 @@ test("the scope draws from its first sample on, and says how long ago, also afte
     /** A tenth of a second of samples. */
     const add = (firstTick) => {
       const columns = Object.keys(samples.since(0)).map((name) => [name, new Float32Array(100).fill(0.3)]);
-      const frame = { ...Object.fromEntries(columns), firstTick, ticksPerSample: 40, contact: true };
+      const frame = { ...Object.fromEntries(columns), firstTick, ticksPerSample: 40, tickHz: 40_000, contact: true };
       samples.add(frame);
       scope.feel(frame);
     };

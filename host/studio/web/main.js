@@ -254,7 +254,7 @@ function showWhatIsFelt(parts) {
     pace.hidden = part === 1;
     pace.textContent = `This computer plays at ${part} of real time: curves look jagged, and touch drops out.`;
   };
-  engine.onAudio = (change, _tick, slowness) => sound.feel(change, slowness);
+  engine.onAudio = (change, _tick, samplesPerS) => sound.feel(change, samplesPerS);
   finger.onDown = () => {
     parts.hasSlid = true;
     lag.hasStroke = true;

@@ -11,6 +11,11 @@ impl SceneCheck {
     /// The check as lines of text, each ending in a line feed: verdicts, the newtons behind them, and whether the
     /// scene fits the board. With `with_costs`, every number of bytes and cycles follows.
     pub fn summary(&self, with_costs: bool) -> String {
+        feel::text(&self.lines(with_costs))
+    }
+
+    /// The lines of [`Self::summary`].
+    pub fn lines(&self, with_costs: bool) -> Vec<Line> {
         let mut lines = feel::lines(&self.judgement);
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         lines.extend(self.notes.iter().map(|note| ("note", note.clone())));
@@ -25,7 +30,7 @@ impl SceneCheck {
             let features = if board.features.is_empty() { "none".to_owned() } else { board.features.join(", ") };
             lines.extend([("features", features), ("build", board.command.clone())]);
         }
-        feel::text(&lines)
+        lines
     }
 
     /// The finger, the friction in reach on it, and the scene's targets.

@@ -5,7 +5,6 @@
 // @ts-check
 "use strict";
 
-const TICKS_PER_MS = 40;
 /** Delay between the pointer and the finger, ms: two samples of a 60 Hz display, and a step of this worker. */
 const DELAY_MS = 40;
 /** Time between two steps of this worker, ms: while something happens, and while no finger is on the board. */
@@ -55,8 +54,13 @@ function wake() {
 }
 
 /** @param {number} ms */
+function ticksIn(ms) {
+  return (ms * engine.layouts.tickHz) / 1000;
+}
+
+/** @param {number} ms */
 function tickAt(ms) {
-  return clock.tick + (ms - clock.ms) * TICKS_PER_MS * clock.rate;
+  return clock.tick + ticksIn(ms - clock.ms) * clock.rate;
 }
 
 /** @param {number} rate How fast time passes. */
@@ -75,11 +79,11 @@ function step() {
     return;
   }
   let ticks = Math.floor(tickAt(now) - engine.plain("simulator_tick"));
-  if (ticks > LAG_MAX_MS * TICKS_PER_MS) {
+  if (ticks > ticksIn(LAG_MAX_MS)) {
     // The finger does not slide its way of the skipped time at once: it is lifted, and comes down where that ends.
     if (!replay) engine.plain("simulator_lift");
     setClock(clock.rate);
-    ticks = STEP_MS * TICKS_PER_MS;
+    ticks = ticksIn(STEP_MS);
   }
   if (ticks > 0) run(ticks, sinceLifeMs <= LIFE_MS);
   count(ticks);
@@ -103,7 +107,7 @@ function count(ticks) {
   counted.ticks += ticks;
   const ms = epochMs() - counted.sinceMs;
   if (ms < PACE_MS) return;
-  const part = counted.ticks / TICKS_PER_MS / ms;
+  const part = counted.ticks / ticksIn(ms);
   tellPace(part > PACE_WHOLE ? 1 : Math.ceil(10 * part) / 10);
   countAnew();
 }
@@ -131,6 +135,7 @@ function run(ticks, isAlive) {
     tick,
     firstTick,
     ticksPerSample,
+    tickHz: engine.layouts.tickHz,
     contact: head.contact !== 0,
     simulated: true,
     slowness: 1 / clock.rate,
@@ -230,11 +235,11 @@ serve({
     if (replay) endReplay(false);
     setClock(1 / slowness);
     engine.plain("simulator_lift");
-    const start = clock.tick + STEP_MS * TICKS_PER_MS;
-    const tickOf = (/** @type {T.PointerSample} */ { epochMs }) => start + (epochMs - samples[0].epochMs) * TICKS_PER_MS;
+    const start = clock.tick + ticksIn(STEP_MS);
+    const tickOf = (/** @type {T.PointerSample} */ { epochMs }) => start + ticksIn(epochMs - samples[0].epochMs);
     const last = samples[samples.length - 1];
     for (const sample of samples) addSample(sample, tickOf(sample));
-    const endTick = tickOf(last) + STEP_MS * TICKS_PER_MS;
+    const endTick = tickOf(last) + ticksIn(STEP_MS);
     addSample({ ...last, down: false }, endTick);
     return new Promise((resolve) => {
       replay = { endTick, resolve };

@@ -65,7 +65,7 @@ export class Engine {
 
   /** @type {(frame: T.Frame) => void} */
   onFrames = () => {};
-  /** @type {(change: Float32Array, firstTick: number, slowness: number) => void} */
+  /** @type {(change: Float32Array, firstTick: number, samplesPerS: number) => void} */
   onAudio = () => {};
   /** @type {(state: T.State) => void} */
   onState = () => {};
@@ -118,7 +118,7 @@ export class Engine {
     if (this.#link !== "simulator") return;
     if (message.type === "frame") {
       this.onFrames({ ...message.frame, state: this.#state.state });
-      this.onAudio(message.sound, message.soundTick, message.frame.slowness);
+      this.onAudio(message.sound, message.soundTick, message.frame.tickHz / message.frame.slowness);
     } else if (message.type === "pace") {
       this.onPace(message.pace);
     } else if (message.type === "state") {

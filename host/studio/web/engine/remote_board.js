@@ -47,6 +47,7 @@ class RemoteBoard {
   /** @type {T.BoardState} */
   state = "disarmed";
   driving = "";
+  tickHz = 0;
   /** The board is lost, and about to be disconnected. */
   onLost = () => {};
 
@@ -172,7 +173,7 @@ class RemoteBoard {
     this.state = state;
     this.#fault = fault;
     this.report();
-    if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry) });
+    if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry, this.tickHz) });
   }
 
   report() {

@@ -8,16 +8,18 @@
 /**
  * Telemetry as a frame of samples. The felt friction and the true place of the finger are unknown to a board.
  * @param {Telemetry[]} telemetry
+ * @param {number} tickHz
  * @returns {T.WorkerFrame}
  */
-function frameOf(telemetry) {
+function frameOf(telemetry, tickHz) {
   const column = (/** @type {Told} */ name) => Float32Array.from(telemetry, (sample) => sample[name]);
   const unknown = () => new Float32Array(telemetry.length).fill(NaN);
   const [first, second] = telemetry;
   return {
     firstTick: first.tick,
     tick: telemetry[telemetry.length - 1].tick,
-    ticksPerSample: second ? second.tick - first.tick : 400,
+    ticksPerSample: second ? second.tick - first.tick : 1,
+    tickHz,
     xMm: column("xMm"),
     yMm: column("yMm"),
     speedMmPerS: column("speedMmPerS"),

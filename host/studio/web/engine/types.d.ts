@@ -78,7 +78,8 @@ export type Reach = { naturalN: number; lowN: number; highN: number };
 export type Checked = Reach & {
   isDraft: boolean;
   screen: Screen;
-  report: string;
+  /** The lines of `frixel check`, each a name and a text. */
+  report: [string, string][];
   reachN: number;
   layers: Layer[];
 };
@@ -114,6 +115,8 @@ export type WorkerFrame = Columns & {
   tick: number;
   firstTick: number;
   ticksPerSample: number;
+  /** Ticks of the board a second. */
+  tickHz: number;
   contact: boolean;
   delayMs: number;
   slowness: number;

@@ -36,7 +36,7 @@ class Engine {
   #suspending = new Map();
   /**
    * The names of the numbers in answers that are no JSON.
-   * @type {{ mapHead: string[], frameHead: string[], frameColumns: string[] }}
+   * @type {{ mapHead: string[], frameHead: string[], frameColumns: string[], tickHz: number }}
    */
   layouts;
 

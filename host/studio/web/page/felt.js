@@ -75,11 +75,7 @@ export function feltLine({ perceived, felt }, scale) {
  * @param {Checked} check
  */
 export function showFelt({ layers, report, ...scale }) {
-  const lines = [...report.matchAll(/^ {2}(\S.{0,15}?)\s+(.*)$/gm)].map(([, name, text]) => ({ name, text }));
-  const named = lines.map(({ name, text }) => {
-    const whole = [...REMARKS, ...OF_LAYERS].find((each) => `${name} ${text}`.startsWith(`${each} `));
-    return whole ? { name: whole, text: `${name} ${text}`.slice(whole.length).trim() } : { name, text };
-  });
+  const named = report.map(([name, text]) => ({ name, text }));
   const remarks = named.filter(({ name, text }) => REMARKS.includes(name) && text !== "nothing");
   remarks.sort((one, other) => REMARKS.indexOf(one.name) - REMARKS.indexOf(other.name));
   const head = ["Layer", "Felt?", "Friction, up to", "Step", "Texture"].map((words) => element("th", { scope: "col" }, words));

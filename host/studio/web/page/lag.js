@@ -129,7 +129,7 @@ export class Lag {
    * @param {Frame} frame
    * @param {number} at
    */
-  #add({ xMm, yMm, predictedXMm, predictedYMm, reportedXMm, reportedYMm, firstTick, ticksPerSample }, at) {
+  #add({ xMm, yMm, predictedXMm, predictedYMm, reportedXMm, reportedYMm, firstTick, ticksPerSample, tickHz }, at) {
     const isDown = Number.isFinite(xMm[at]);
     if (isDown && !this.#isStroke) {
       this.#borders = new Borders((x, y) => this.#parts.map.frictionAt(x, y), this.#parts.map.frictionN);
@@ -138,7 +138,7 @@ export class Lag {
     this.#isStroke = isDown;
     if (!isDown || !Number.isFinite(predictedXMm[at]) || !Number.isFinite(reportedXMm[at])) return;
     this.#borders?.add(
-      (firstTick + at * ticksPerSample) / 40,
+      (1000 * (firstTick + at * ticksPerSample)) / tickHz,
       { xMm: xMm[at], yMm: yMm[at] },
       {
         predicted: { xMm: predictedXMm[at], yMm: predictedYMm[at] },

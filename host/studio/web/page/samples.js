@@ -3,6 +3,7 @@
 
 /** @import { Column, Frame } from "../engine/types" */
 
+/** Most samples that are kept. */
 const CAPACITY = 40_000;
 /** Without a touch for this long, s, nothing is kept, so that the last strokes stay. */
 const IDLE_S = 1;
@@ -12,10 +13,10 @@ const IDLE_S = 1;
  * @type {Record<"timeS" | Column, string>}
  */
 const NAMES = {
-  timeS: "time_s",
+  timeS: "t_s",
   xMm: "x_mm",
   yMm: "y_mm",
-  speedMmPerS: "speed_mm_per_s",
+  speedMmPerS: "speed_mm_s",
   referenceN: "reference_n",
   feltN: "felt_n",
   voltageV: "voltage_v_rms",
@@ -53,14 +54,14 @@ export class Samples {
 
   /** @param {Frame} frame */
   add(frame) {
-    const { firstTick, ticksPerSample, feltN, xMm, contact } = frame;
+    const { firstTick, ticksPerSample, tickHz, feltN, xMm, contact } = frame;
     // In slow motion there are frames without a sample.
     if (feltN.length === 0) return;
-    const startS = firstTick / 40_000;
+    const startS = firstTick / tickHz;
     // A board that was reset counts from zero again.
     if (startS < this.nowS - 0.01) this.clear();
     for (let at = 0; at < feltN.length; at += 1) {
-      this.nowS = startS + (at * ticksPerSample) / 40_000;
+      this.nowS = startS + (at * ticksPerSample) / tickHz;
       if (contact || Number.isFinite(xMm[at])) this.#touchedS = this.nowS;
       if (this.nowS - this.#touchedS > IDLE_S) continue;
       this.#data.timeS[this.#next] = this.nowS;

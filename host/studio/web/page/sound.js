@@ -100,9 +100,9 @@ export class Sound {
 
   /**
    * @param {Float32Array} samples
-   * @param {number} slowness
+   * @param {number} samplesPerS
    */
-  feel(samples, slowness) {
-    if (this.isOn) this.#built?.node.port.postMessage({ samples, slowness });
+  feel(samples, samplesPerS) {
+    if (this.isOn) this.#built?.node.port.postMessage({ samples, samplesPerS });
   }
 }

@@ -15,7 +15,8 @@ class FrictionSound extends AudioWorkletProcessor {
   #ring = new Float32Array(CAPACITY);
   #written = 0;
   #read = -1;
-  #perSample = 40_000 / sampleRate;
+  /** Samples of friction for one of sound. */
+  #perSample = 1;
   #mode = "headphones";
   #grain = 0;
 
@@ -27,9 +28,9 @@ class FrictionSound extends AudioWorkletProcessor {
     };
   }
 
-  /** @param {{ samples: Float32Array, slowness: number }} change */
-  #take({ samples, slowness }) {
-    this.#perSample = 40_000 / slowness / sampleRate;
+  /** @param {{ samples: Float32Array, samplesPerS: number }} change */
+  #take({ samples, samplesPerS }) {
+    this.#perSample = samplesPerS / sampleRate;
     for (const sample of samples) {
       this.#ring[this.#written % CAPACITY] = sample;
       this.#written += 1;
