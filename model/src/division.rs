@@ -2,7 +2,8 @@
 
 use core::num::NonZeroU32;
 
-/// The quotient of `whole * 2^32 + fraction` and `divisor`, rounded down, and the remainder. The divisor is at most 2^24.
+/// The quotient of `whole * 2^32 + fraction` and `divisor`, rounded down, and the remainder. Wrong for a
+/// divisor above 2^24, since a remainder and a byte are 32 bits.
 ///
 /// It divides byte by byte in 32 bits, since the library's division of 64 bits takes 1 KB of a board's flash.
 ///

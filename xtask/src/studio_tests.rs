@@ -73,7 +73,7 @@ pub(crate) fn take_shots() -> Result<(), String> {
     run("pictures of the studio", node.current_dir(&folder).arg(SHOTS).env("STUDIO_PAGE", page))
 }
 
-/// The runner of tests, with the page and the virtual board that says it is real. Builds these and all examples.
+/// The runner of tests, with the page and the virtual board that says it is real. Builds these.
 fn runner() -> Result<Command, String> {
     let page = studio::build()?;
     let names = [REAL_BOARD, HASHES].into_iter().flat_map(|name| ["--example", name]);

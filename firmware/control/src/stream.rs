@@ -104,6 +104,7 @@ impl<'a> StreamIntake<'a> {
         let first = self.buffer.end.load(Ordering::Relaxed);
         self.first = Some(first);
         self.buffer.holes.store(0, Ordering::Relaxed);
+        // In units of `ONE`, half of 2^32. Without a tick rate no sample is played.
         let step = NonZeroU32::new(tick_hz).map_or(0, |tick_hz| (divide_wide(sample_hz, 0, tick_hz).0 >> 1) as u32);
         StreamStart { first, step, start_level: u32::from(start_level) }
     }

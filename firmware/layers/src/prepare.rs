@@ -25,7 +25,7 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
 }
 
 /// Phase increment of a frequency per tick, in steps of 2^-32 turns, modulo a turn. The frequency is less than half of
-/// the tick rate, and may be negative.
+/// the tick rate, and may be negative. Zero without a tick rate, and for not-a-number.
 #[cfg_attr(
     not(any(feature = "vibration", feature = "grating", feature = "rings")),
     allow(dead_code, reason = "only these change with time")

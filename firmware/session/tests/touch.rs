@@ -1,6 +1,8 @@
 //! From touch reports to the drive: lifts, late tracks, and a tick count that wraps.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use crate::support::{HEADER, TestBoard, constant, constant_scene, request, scene};
+use crate::support;
+
 use frixel_control::{Board, Drive, Order, Track};
 use frixel_layers::{Header, Record, Region};
 use frixel_session::Touch;
@@ -11,6 +13,7 @@ use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::Command;
 use frixel_wire::payload::chunk_frame;
 use frixel_wire::scene::RECORDS_MAX;
+use support::{HEADER, TestBoard, constant, constant_scene, request, scene};
 
 const OFF: Drive = Drive { dac_code: DacCode::ZERO, amplifier_enable: false };
 const REPORT_TICKS: u32 = 400;
@@ -75,14 +78,14 @@ fn pipelined() -> Vec<u8> {
 }
 
 /// The finger leaves at each step of the largest commit, and the touch source or the host reports it.
-fn lift_during_the_largest_commit(lift: impl Fn(&mut TestBoard)) {
+fn lift_during_the_largest_commit(pipelined: &[u8], lift: impl Fn(&mut TestBoard)) {
     let scene = largest_scene();
     let mut lifted_at_poll = 0;
     loop {
         let mut board = playing();
         board.upload_scene(&scene).unwrap();
         let commit = request(999, Command::Commit { crc32: crc32(&scene) });
-        board.session.receive(&[commit, pipelined()].concat(), &board.ticker.status());
+        board.session.receive(&[&commit, pipelined].concat(), &board.ticker.status());
         for poll in 0..lifted_at_poll {
             assert_ne!(slide(&mut board, 1600 + poll), OFF);
         }
@@ -103,11 +106,21 @@ fn lift_during_the_largest_commit(lift: impl Fn(&mut TestBoard)) {
     assert!(lifted_at_poll > 20, "the largest commit took {lifted_at_poll} steps: each is longer than it may be");
 }
 
+fn lift_of_touch_source(board: &mut TestBoard) {
+    board.touch = Some(Touch::Up);
+}
+
+fn lift_of_host(board: &mut TestBoard) {
+    board.session.receive(&request(998, Command::Lift), &board.ticker.status());
+}
+
 /// `receive` never carries out a commit, whatever follows it on the line: each poll takes one step.
 #[test]
 fn a_lift_during_the_largest_commit_acts_within_2_ms() {
-    lift_during_the_largest_commit(|board| board.touch = Some(Touch::Up));
-    lift_during_the_largest_commit(|board| board.session.receive(&request(998, Command::Lift), &board.ticker.status()));
+    for pipelined in [&[][..], &pipelined()] {
+        lift_during_the_largest_commit(pipelined, lift_of_touch_source);
+        lift_during_the_largest_commit(pipelined, lift_of_host);
+    }
 }
 
 #[test]
@@ -267,11 +280,36 @@ fn the_finger_is_followed_while_the_tick_count_wraps() {
 }
 
 #[test]
-fn lost_reports_end_the_drive_while_the_tick_count_wraps() {
+fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
     for ticks in [1, 500, 1_199, 1_200, 1_599, 1_600, 1_601] {
         let mut board = playing_until_wrap(ticks);
         board.touch = Some(report(0));
         let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 1..=STALE_TICKS + 1).contains(&on), "wraps in {ticks}: on for {on}");
+    }
+    for ticks in [5, 5_000, 9_999, 10_001] {
+        let mut board = playing_until_wrap(ticks);
+        let on = (0..20_000).take_while(|tick| slide(&mut board, *tick) != OFF).count();
+        assert!((9_998..=10_001).contains(&on), "wraps in {ticks}: on for {on}");
+        assert!(board.status().telemetry.flags.contains(Flags::HOST_SILENT));
+    }
+}
+
+#[test]
+fn a_still_finger_is_ramped_away_while_the_tick_count_wraps() {
+    for ticks in [100, 2_100, 2_300, 2_500] {
+        let mut board = playing_until_wrap(ticks);
+        let mut volts = Vec::new();
+        for tick in 0..4_000_u32 {
+            if tick.is_multiple_of(REPORT_TICKS) {
+                board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.03, age_ticks: 0 });
+            }
+            board.tick();
+            volts.push(board.status().telemetry.voltage_v_rms);
+        }
+        assert!(volts[1_990] > 100.0, "slow for less than 50 ms");
+        assert!(volts[2_410] <= 0.0, "wraps in {ticks}: {} V 10 ms later", volts[2_410]);
+        // Downward only, and without a jump.
+        assert!(volts[2_000..2_380].windows(2).all(|pair| pair[1] <= pair[0] && pair[0] - pair[1] < 2.0), "{ticks}");
     }
 }

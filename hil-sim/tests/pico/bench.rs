@@ -78,6 +78,13 @@ impl Bench {
         bench
     }
 
+    /// Switches a board on whose image takes the finger's place from a touch frame.
+    pub(super) fn just_on_with_frame(image: &Image) -> Self {
+        let bench = Self::just_on(image);
+        bench.with(PicoRig::attach_frame);
+        bench
+    }
+
     /// Switches a board on that has stored nothing yet.
     pub(super) fn factory_new(image: &Image) -> Self {
         Self::of(PicoRig::factory_new(image, world()).unwrap())

@@ -117,6 +117,21 @@ fn a_frame_that_does_not_acknowledge_stops_the_output_until_it_does() {
 }
 
 #[test]
+fn a_board_without_its_frame_is_there_and_drives_nothing() {
+    let Some(image) = emulator::pico_image_with_frame() else { return };
+    let bench = Bench::just_on_with_frame(&image);
+    frame(&bench, |frame| frame.module().connect(false));
+    bench.pass(Duration::from_millis(60));
+    let mut host = bench.connect();
+    frixel_play::start(&mut host, &program(CONSTANT), &mut ignore_progress).unwrap();
+    bench.with(|rig| rig.world_mut().start_stroke());
+    host.wait(BROKEN_FOR, &mut |_| ()).unwrap();
+    assert_eq!(bench.with(|rig| rig.zero_since()), Some(Duration::ZERO));
+    frame(&bench, |frame| frame.module().connect(true));
+    comes_back(&bench, &mut host);
+}
+
+#[test]
 fn a_clock_that_is_held_stops_the_output_until_it_is_released() {
     let Some(image) = emulator::pico_image_with_frame() else { return };
     let (bench, mut host) = playing(&image);

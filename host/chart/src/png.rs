@@ -17,7 +17,7 @@ const UNITS: usize = 2;
 const SCALE: Scale = Scale(UNITS as u32);
 /// Number of grey levels: enough for the edges of letters, few enough for a palette.
 const GREYS: u32 = 17;
-/// Number of levels of each channel along the edges of colours, of which a square of four units covers some.
+/// Number of levels of each channel along edges of colours: a pixel has four units, of which 0 to 4 are covered.
 const EDGE_LEVELS: u32 = 5;
 /// Smallest difference between colours, in a channel, that have an edge. Others are steps of the same colour scale.
 const EDGE_MIN: u8 = 64;
@@ -53,12 +53,14 @@ fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
     pixels
 }
 
-/// The average of units. Greys and the averages along edges are rounded to few levels.
+/// The colour of a pixel: the average of its units along edges and in greys, rounded to few levels, and otherwise the
+/// first of them. So the colour scale, edges and greys of a map are at most 256 colours, a palette.
 fn average(units: [[u8; 3]; UNITS * UNITS]) -> [u8; 3] {
+    const COUNT: u32 = (UNITS * UNITS) as u32;
     let [first, ..] = units;
     let channel = |channel: usize| units.map(|unit| unit[channel]);
     let channels = [channel(0), channel(1), channel(2)];
-    let average = channels.map(|values| (values.into_iter().map(u32::from).sum::<u32>() + 2) / 4);
+    let average = channels.map(|values| (values.into_iter().map(u32::from).sum::<u32>() + COUNT / 2) / COUNT);
     let has_edge = channels.iter().any(|values| {
         let (low, high) = values.iter().fold((u8::MAX, 0), |(low, high), value| (low.min(*value), high.max(*value)));
         high - low >= EDGE_MIN

@@ -29,7 +29,8 @@ static FONT: &[u8] = include_bytes!("../font/DejaVuSans-subset.ttf");
 const MARK: f64 = 4.2;
 /// Lengths of a dash and of the gap after it, in pixels.
 const DASH: (u32, u32) = (7, 5);
-/// Number of colours in the colour scale; more would be indistinguishable and would make picture files large.
+/// Number of colours in the colour scale; more would be indistinguishable, and would not fit into the
+/// palette of a picture.
 const COLOUR_STEPS: f64 = 30.0;
 
 /// Colours that can be told apart with any kind of colour vision (Okabe and Ito, <https://jfly.uni-koeln.de/color/>).

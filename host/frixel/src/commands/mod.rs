@@ -101,7 +101,7 @@ struct SimArgs {
     /// A simulated person in place of --finger: another one for each seed.
     #[arg(long, value_name = "N", group = "own_finger")]
     finger_seed: Option<u64>,
-    /// The screen under the finger of --finger or --finger-seed: a screen's file. Default: `example`.
+    /// The screen under the finger of --finger or --finger-seed: a screen's file or `example`. Default: `example`.
     #[arg(long, value_name = "NAME|FILE", requires = "own_finger")]
     screen: Option<String>,
     #[command(flatten)]

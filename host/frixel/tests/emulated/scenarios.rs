@@ -58,9 +58,25 @@ fn scenarios_show_on_the_emulated_board_what_they_expect() {
 }
 
 #[test]
+#[ignore = "minutes of a machine that does nothing else"]
+fn every_scenario_shows_on_the_emulated_board_what_it_expects() {
+    if image().is_some() {
+        check("qemu", &NOT_ON_QEMU, |_| true);
+    }
+}
+
+#[test]
 fn scenarios_show_on_the_picos_image_what_they_expect() {
     if pico_image().is_some() {
         check("pico", &NOT_ON_PICO, |name| FEW_ON_PICO.contains(&name));
+    }
+}
+
+#[test]
+#[ignore = "half an hour"]
+fn every_scenario_shows_on_the_picos_image_what_it_expects() {
+    if pico_image().is_some() {
+        check("pico", &NOT_ON_PICO, |_| true);
     }
 }
 

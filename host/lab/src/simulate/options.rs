@@ -116,7 +116,7 @@ pub enum StrokeOptionsError {
         seconds: f64,
     },
     /// The finger slides too slowly or too fast.
-    #[error("the finger slides at {} mm/s: give a speed above 0, at most {} mm/s", 1e3 * .m_per_s, 1e3 * STRAIGHT_MAX_M_PER_S)]
+    #[error("the finger slides at {} mm/s: give a speed above 0, at most {} mm/s", Shown(1e3 * .m_per_s), 1e3 * STRAIGHT_MAX_M_PER_S)]
     Speed {
         /// Its speed, m/s.
         m_per_s: f64,
@@ -143,7 +143,8 @@ impl StrokeOptions {
 
     /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers
     /// a screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
-    /// A person's stroke repeats after [`HUMAN_STROKE_MAX_S`].
+    /// In a play longer than
+    /// [`HUMAN_STROKE_MAX_S`], a person's stroke repeats.
     pub fn generated(
         &self,
         screen_m: [f64; 2],
@@ -151,10 +152,12 @@ impl StrokeOptions {
         seed: u64,
     ) -> Result<Option<Stroke>, StrokeOptionsError> {
         if let Some(generated) = self.name.as_deref().and_then(GeneratedStroke::named) {
-            let seconds = self.human_seconds.or(seconds).unwrap_or(GENERATED_S);
             let max_s = if generated.is_of_people() { HUMAN_STROKE_MAX_S } else { STROKE_MAX_S };
-            let stroke = generated.stroke(screen_m, seconds.min(max_s), None, self.human_seed.unwrap_or(seed));
-            let stroke = if seconds > max_s { stroke.and_then(|once| once.looped(REPEAT_PAUSE_S)) } else { stroke };
+            let play_s = seconds.unwrap_or(GENERATED_S);
+            let stroke_s = self.human_seconds.unwrap_or(play_s.min(max_s));
+            let is_repeated = self.human_seconds.is_none() && play_s > max_s;
+            let stroke = generated.stroke(screen_m, stroke_s, None, self.human_seed.unwrap_or(seed));
+            let stroke = if is_repeated { stroke.and_then(|once| once.looped(REPEAT_PAUSE_S)) } else { stroke };
             return stroke.map(Some).map_err(StrokeOptionsError::Generated);
         }
         let point = |[x_m, y_m]: [f64; 2]| Point { x_m, y_m };
@@ -237,6 +240,8 @@ mod tests {
         let both: Vec<_> = times.filter_map(|t_s| x_m(t_s).zip(x_m(again_s + t_s))).collect();
         assert!(both.len() > 500, "{}", both.len());
         assert!(both.iter().all(|(first, again)| (first - again).abs() < 1e-6));
+        let of_its_own = human(None, Some(900.0)).generated(SCREEN_M, None, 5);
+        assert!(matches!(of_its_own, Err(StrokeOptionsError::Generated(_))), "its duration would be infinite");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The plan of a sweep, a TOML file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Debug;
 
 use frixel_hil_sim::TouchConfig;
 use frixel_scene::{NamedProfile, Nearest, Profile, Screen, brief, check_toml};
@@ -163,10 +164,10 @@ impl Values {
     }
 }
 
-/// The first item of a list that is there again.
-fn repeated<T: PartialEq>(items: &[T]) -> Option<&T> {
-    let (_, item) = items.iter().enumerate().find(|(at, item)| items.iter().take(*at).any(|before| before == *item))?;
-    Some(item)
+/// The first item of a list that is there a second time.
+fn repeated<T: Debug>(items: &[T]) -> Option<&T> {
+    let mut seen = BTreeSet::new();
+    items.iter().find(|item| !seen.insert(format!("{item:?}")))
 }
 
 /// Why there are no cells, in a sentence that names the file and the field.
@@ -228,6 +229,9 @@ impl Plan {
                 }
                 Values::List(values) if values.is_empty() => {
                     return refuse(path, "empty".to_owned(), "a list of values, or { from, to, count }");
+                }
+                Values::Range(range) if range.from.to_bits() == range.to.to_bits() => {
+                    return refuse(path, "a range between equal numbers".to_owned(), "two numbers that differ");
                 }
                 Values::Range(range) if !(2..=1000).contains(&range.count) => {
                     return refuse(path, format!("a range of {}", range.count), "a count from 2 to 1000");

@@ -132,6 +132,20 @@ fn insulation_and_distances_are_those_of_the_largest_voltage_between_the_rails()
     assert!(basic_mm >= needed_mm && reinforced_mm >= 2.0 * needed_mm, "{needed_mm} mm: {millimetres:?}");
 }
 
+/// Metal behind the screen is capacitance that the edges do not count, and a way from the electrode to earth.
+#[test]
+fn nothing_conductive_is_behind_the_electrode() {
+    let carrier = read().unwrap();
+    let ratings = &part(&carrier, "K1").ratings;
+    let said = "nothing conductive within 20 mm behind it, so no display and no metal table";
+    assert!(ratings.contains(said), "{ratings}");
+    // 10 cm by 10 cm with earth on all of its back, and 30 pF of wire.
+    let behind_f = 8.854e-12 * 0.01 / 20e-3 + 30e-12;
+    assert!(behind_f < 50e-12 && ratings.contains("50 pF or less to the common without a finger"), "{behind_f}");
+    let safety = fs::read_to_string(root().join("docs/board/safety.md")).unwrap();
+    assert!(safety.contains("within 20 mm behind") && safety.contains("**no more than 50 pF**"));
+}
+
 /// Switching the rails off does not rely on the firmware, and no wire ties the supply's input to the common.
 #[test]
 fn the_rails_have_a_switch_of_their_own_in_front_of_the_insulation() {

@@ -43,9 +43,6 @@ fn what_protects_is_between_the_nets_that_it_is_for() {
         ("U1.USB", "USB"),
         ("X1.DEVICE", "USB"),
         ("K2.1", "RETURN"),
-        ("F1.VBUS", "5V"),
-        ("R14.2", "3V3"),
-        ("R15.2", "3V3"),
     ] {
         assert_eq!(net_of(&carrier, pin).name, name, "{pin}");
     }
@@ -138,6 +135,13 @@ fn the_amplifiers_input_is_held_at_zero_without_the_dac() {
     assert!(1e-6 * ohm * 20.0 < 1.0);
     // The DAC gives some milliamperes, behind 0.5 Ohm (AD5761R-EP).
     assert!(10.0 / ohm < 2e-3 && 0.5 / ohm < 1e-3);
+}
+
+#[test]
+fn each_pole_of_the_switch_has_a_cable_of_its_own() {
+    let carrier = read().unwrap();
+    let switch = part(&carrier, "S1");
+    assert!(switch.ratings.contains("each pole on a cable of its own"), "{}", switch.ratings);
 }
 
 /// The monostable lives longer than some ticks, and at most 1 ms, with every part at the end of its tolerance; and each

@@ -78,3 +78,27 @@ fn the_dacs_supply_is_regulated_within_what_the_dac_bears() {
         assert!(largest_v < number("U2", bears), "{largest_v} V");
     }
 }
+
+/// The optical frame is supplied with 5 V, and talks at 3.3 V.
+#[test]
+fn the_optical_frame_has_the_supply_of_its_guide() {
+    let carrier = read().unwrap();
+    assert!(net(&carrier, "5V").nodes.iter().any(|node| node == "F1.VBUS"));
+    for pull_up in ["R14.2", "R15.2"] {
+        assert!(net(&carrier, "3V3").nodes.iter().any(|node| node == pull_up));
+    }
+    let frame = part(&carrier, "F1");
+    assert!(frame.ratings.contains("N_RST") && frame.ratings.contains("0.1 A"), "{}", frame.ratings);
+}
+
+/// A Pico's inputs bear 3.3 V.
+#[test]
+fn what_a_pico_reads_is_never_above_its_supply() {
+    let carrier = read().unwrap();
+    let ratings = |name: &str| &part(&carrier, name).ratings;
+    assert!(ratings("A1").contains("READY never more than 3.3 V"));
+    assert!(ratings("F1").contains("signals of 3.3 V"));
+    assert!(net(&carrier, "3V3").nodes.iter().any(|node| node == "S1.1"), "the switch closes to 3.3 V");
+    assert!(ratings("X1").contains("a hub that both plug into"), "probe and supply are two cables");
+    assert!(ratings("X1").contains("that has no supply of its own"), "its adapter may be on earth");
+}
