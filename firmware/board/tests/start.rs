@@ -1,14 +1,14 @@
 //! The start of every board: the order of its assembly, and the board's description of itself.
 
 use frixel_board::fault::LastReset;
-use frixel_board::start::describe;
+use frixel_board::start::{describe, prepare};
 use frixel_control::Board as Description;
 use frixel_session::store::{CeilingPolicy, Flash};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::hello::{ResetCause, notice};
 
 use crate::support::firmware::BOARD;
-use crate::support::hardware::Event;
+use crate::support::hardware::{Event, Part, wires};
 use crate::support::played::Board;
 
 /// A flash that holds the same byte everywhere.
@@ -35,6 +35,14 @@ fn the_tick_starts_before_the_watchdog_and_nothing_is_driven() {
     let board = Board::new();
     assert_eq!(board.wires.take(), [Event::TickStarted, Event::WatchdogStarted]);
     assert_eq!((board.state(), board.shared.count()), (State::Disarmed, 0));
+}
+
+#[test]
+fn the_dac_is_prepared_once_and_a_missing_one_is_no_fault_yet() {
+    let wires = wires();
+    wires.dac.set(Err(1));
+    prepare(&mut Part(wires.clone()));
+    assert_eq!(wires.take(), [Event::Prepared]);
 }
 
 #[test]

@@ -234,6 +234,31 @@ fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
 }
 
 #[test]
+fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
+    for period_ticks in (1..=24).chain([40, 400, 667]) {
+        let mut board = playing();
+        let mut x_m = 0.03;
+        let mut slide = |board: &mut TestBoard, step_m: f32| {
+            for tick in 0..6_000_u32.max(40 * period_ticks) {
+                x_m += step_m;
+                if tick.is_multiple_of(period_ticks) {
+                    board.touch = Some(Touch::Down { x_m, y_m: 0.03, age_ticks: 0 });
+                }
+                if tick.is_multiple_of(2_000) {
+                    board.command(Command::Ping).unwrap();
+                }
+                board.tick();
+            }
+            board.status().telemetry
+        };
+        let still = slide(&mut board, 0.0);
+        assert!(still.flags.contains(Flags::STILL) && still.dac_code == 0, "every {period_ticks}: {still:?}");
+        let moving = slide(&mut board, 2.5e-6);
+        assert!(!moving.flags.contains(Flags::STILL) && moving.dac_code != 0, "every {period_ticks}: {moving:?}");
+    }
+}
+
+#[test]
 fn a_source_that_reports_at_every_tick_is_followed_as_any_other() {
     for period_ticks in 1..6 {
         let mut board = playing();

@@ -18,6 +18,7 @@ use frixel_wire::payload::CHUNK_LEN;
 #[cfg(feature = "bitmap")]
 use frixel_wire::scene::bitmap_crc32;
 use frixel_wire::scene::{RECORDS_MAX, SceneError};
+use proptest::prelude::*;
 
 #[test]
 fn a_scene_is_used_whole_or_not_at_all() {
@@ -533,4 +534,20 @@ fn tick_times_are_those_that_the_tick_recorded_and_zero_where_nothing_measures()
     board.ticker.raise(Fault::Deadline, 3_701);
     board.tick();
     assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(METER.times(1))));
+}
+
+proptest! {
+    /// Arbitrary bytes never reach the output, and never stop the board.
+    #[test]
+    fn arbitrary_bytes_leave_the_board_disarmed_and_listening(
+        bytes in proptest::collection::vec(any::<u8>(), 0..2000),
+    ) {
+        let mut board = TestBoard::new();
+        board.send(&bytes);
+        board.send(&[0]);
+        board.touch = Some(Touch::Down { x_m: 0.05, y_m: 0.05, age_ticks: 0 });
+        let drive = board.ticks(10);
+        prop_assert_eq!(drive, frixel_control::Drive::default());
+        prop_assert_eq!(board.hello().state, State::Disarmed);
+    }
 }

@@ -8,6 +8,7 @@ mod designer;
 mod felt;
 mod fit_command;
 mod gallery;
+mod handover;
 #[path = "kinds/main.rs"]
 mod kinds;
 #[path = "outputs/main.rs"]
