@@ -44,6 +44,11 @@ impl Control {
         self.kept.as_deref()
     }
 
+    /// Number of the line that still waits at time `t_s` of the play, if one does.
+    pub fn waiting_line(&self, t_s: f64) -> Option<u32> {
+        (self.resume_at_s > t_s).then_some(self.lines_read)
+    }
+
     /// Keeps a line that replaces the scene with the one of this number.
     pub fn keep_replace(&mut self, number: usize) {
         if let Some(kept) = &mut self.kept {

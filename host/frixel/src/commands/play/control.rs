@@ -69,6 +69,11 @@ impl Control {
         if self.input.waits { until_next } else { until_next.min(LOOK_PERIOD) }
     }
 
+    /// Number of the line that still waits at time `t_s` of the play, if one does.
+    pub(super) fn waiting_line(&self, t_s: f64) -> Option<u32> {
+        self.lines.waiting_line(t_s)
+    }
+
     /// Carries out the lines that have arrived at time `t_s` of the play. Calls `say` with what is refused or clamped,
     /// a sentence each.
     pub(super) fn step<L: RecordedLink>(

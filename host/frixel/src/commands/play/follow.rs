@@ -179,14 +179,21 @@ impl<L: RecordedLink> Play<'_, L> {
         self.bars.finish();
         let (counters, stream) = (self.player.device().counters(), self.player.device().stream_status());
         let mut recorder = self.player.into_recorder();
+        let played_s = recorder.t_s();
         let Plan { program, target, .. } = &self.plan;
         let is_requested = self.interrupt.is_requested() || (ended.is_err() && self.interrupt.was_requested());
         let interrupted = is_requested && target.is_virtual_time();
         if interrupted {
-            let (played_s, seconds) = (recorder.t_s(), self.plan.seconds());
+            let seconds = self.plan.seconds();
             note(format_args!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s"));
         }
-        let realtime_factor = target.is_virtual_time().then(|| recorder.t_s() / playing.as_secs_f64());
+        if let Some(line) = self.control.as_ref().and_then(|control| control.waiting_line(played_s)) {
+            note(format_args!(
+                "frixel: line {line} of standard input waits longer than the play, which ended at {played_s:.3} s: \
+                 lines after it were not carried out"
+            ));
+        }
+        let realtime_factor = target.is_virtual_time().then(|| played_s / playing.as_secs_f64());
         let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
             .with_origin(program.finger.origin)
             .with_world(self.plan.world)
@@ -211,7 +218,7 @@ impl<L: RecordedLink> Play<'_, L> {
         // A line may have switched them on.
         let starts_off = starts_off(program).filter(|_| self.control.is_none());
         let verdicts = judged.and_then(|samples| in_play(program, &samples, &goes_on));
-        let report = report.with_verdicts(verdicts, recorder.t_s()).with_notes(no_verdict, starts_off);
+        let report = report.with_verdicts(verdicts, played_s).with_notes(no_verdict, starts_off);
         let marked = (recorder.markers(), is_requested || ended.is_err());
         let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
