@@ -14,7 +14,7 @@ use frixel_board::self_test::{
 };
 use frixel_control::{Active, Board, Sense, Status, TickMeter, Ticker};
 use frixel_layers::BitmapPool;
-use frixel_session::Session;
+use frixel_session::{NextScene, Session};
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::TickTimes;
 
@@ -75,13 +75,13 @@ impl<P: Port> LoopedRig<P> {
     /// A board with one defect, or [`Defect::Nothing`].
     pub fn new(port: P, wrong: Defect) -> Self {
         let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
-        let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
-        let ticker = Ticker::new(&Board::NUCLEO_G474RE, pool, first);
+        let (playing, next) = (Box::leak(Box::new(Active::new())), Box::leak(Box::new(NextScene::new())));
+        let ticker = Ticker::new(&Board::NUCLEO_G474RE, pool, playing);
         Self {
             port,
             reader: LineReader::default(),
             wrong,
-            session: Session::new(Board::NUCLEO_G474RE, pool, second),
+            session: Session::new(Board::NUCLEO_G474RE, pool, next),
             status: ticker.status(),
             ticker,
             meter: TickMeter::new(DEADLINE_CYCLES),

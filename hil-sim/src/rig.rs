@@ -4,7 +4,7 @@ use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::BitmapPool;
 use frixel_layers::{Header, Scene};
-use frixel_session::{Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
+use frixel_session::{NextScene, Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardLimits, notice};
 use frixel_wire::message::Refusal;
@@ -23,7 +23,8 @@ const NAME: &str = "sim";
 /// Memory of a simulated board, which a real board has in statics. Boxed, since it is large.
 pub struct BoardMemory {
     pool: BitmapPool,
-    actives: [Active; 2],
+    playing: Active,
+    next: NextScene,
     stream: StreamBuffer,
 }
 
@@ -32,8 +33,8 @@ impl BoardMemory {
     #[must_use]
     #[allow(clippy::large_stack_arrays, reason = "a desktop's stack has room for what is made in passing")]
     pub fn new() -> Box<Self> {
-        let actives = [Active::new(), Active::new()];
-        Box::new(Self { pool: BitmapPool::new(), actives, stream: StreamBuffer::new() })
+        let (playing, next) = (Active::new(), NextScene::new());
+        Box::new(Self { pool: BitmapPool::new(), playing, next, stream: StreamBuffer::new() })
     }
 
     /// Bytes of coefficients that a scene occupies in a board's RAM, in the active buffer and in the buffer of the next
@@ -290,10 +291,10 @@ impl<'a> Rig<'a> {
 
 /// A freshly started board.
 fn started(board: Board, memory: &mut BoardMemory) -> (Session<'_>, Ticker<'_>) {
-    let BoardMemory { pool, actives: [first, second], stream } = memory;
-    let mut ticker = Ticker::new(&board, pool, first);
+    let BoardMemory { pool, playing, next, stream } = memory;
+    let mut ticker = Ticker::new(&board, pool, playing);
     ticker.attach_stream(stream);
-    let mut session = Session::new(board, pool, second);
+    let mut session = Session::new(board, pool, next);
     session.attach_stream(stream);
     (session, ticker)
 }

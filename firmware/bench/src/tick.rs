@@ -3,7 +3,7 @@
 use cortex_m::singleton;
 use frixel_control::{Active, Board, Drive, Sense, StreamBuffer, Ticker};
 use frixel_layers::{BitmapPool, Header, Point, Record, Scene};
-use frixel_session::{Session, Touch};
+use frixel_session::{NextScene, Session, Touch};
 use frixel_testkit::{HEADER, IdealMonitor, RandomScene, empirical_header, record, scene_with_points};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::fault::State;
@@ -60,12 +60,10 @@ impl Bench {
         static POOL: BitmapPool = BitmapPool::new();
         static STREAM: StreamBuffer = StreamBuffer::new();
         let board = Board::SIMULATOR;
-        let (Some(first), Some(second)) = (singleton!(: Active = Active::new()), singleton!(: Active = Active::new()))
-        else {
-            panic!("this runs once");
-        };
-        let mut ticker = Ticker::new(&board, &POOL, first);
-        let mut session = Session::new(board, &POOL, second);
+        let memory = (singleton!(: Active = Active::new()), singleton!(: NextScene = NextScene::new()));
+        let (Some(playing), Some(next)) = memory else { panic!("this runs once") };
+        let mut ticker = Ticker::new(&board, &POOL, playing);
+        let mut session = Session::new(board, &POOL, next);
         ticker.attach_stream(&STREAM);
         session.attach_stream(&STREAM);
         Self {

@@ -6,7 +6,7 @@ use core::mem::MaybeUninit;
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
-use frixel_session::{Queues, Session, SessionEnds, TickEnds};
+use frixel_session::{NextScene, Queues, Session, SessionEnds, TickEnds};
 
 /// Memory for bitmaps, written by the session and read by the tick.
 static POOL: BitmapPool = BitmapPool::new();
@@ -29,8 +29,8 @@ pub struct BoardParts {
 
 /// Memory that is too large for the stack. It is a static in a board's `main`, which holds the only reference.
 pub struct Memory {
-    first: MaybeUninit<Active>,
-    second: MaybeUninit<Active>,
+    playing: Active,
+    next: NextScene,
     session: MaybeUninit<Session<'static>>,
     queues: Queues,
 }
@@ -39,20 +39,15 @@ impl Memory {
     /// Empty memory.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
-        Self {
-            first: MaybeUninit::uninit(),
-            second: MaybeUninit::uninit(),
-            session: MaybeUninit::uninit(),
-            queues: Queues::new(),
-        }
+        Self { playing: Active::new(), next: NextScene::new(), session: MaybeUninit::uninit(), queues: Queues::new() }
     }
 
     /// Creates the tick, the session and the queues between them, with the ends of each.
     #[inline(never)]
     pub fn make(&'static mut self, board: Board) -> BoardParts {
         #[cfg_attr(not(feature = "stream"), allow(unused_mut, reason = "a stream is attached to it"))]
-        let mut ticker = Ticker::new(&board, &POOL, coefficients(&mut self.first));
-        let session = session(&mut self.session, board, coefficients(&mut self.second));
+        let mut ticker = Ticker::new(&board, &POOL, &mut self.playing);
+        let session = session(&mut self.session, board, &mut self.next);
         #[cfg(feature = "stream")]
         {
             ticker.attach_stream(&STREAM);
@@ -63,19 +58,12 @@ impl Memory {
     }
 }
 
-// Large values are created on the stack, so that flash holds no copy of them. Each has its own function, so that the
-// stack holds only one at a time.
-
-#[inline(never)]
-fn coefficients(place: &'static mut MaybeUninit<Active>) -> &'static mut Active {
-    place.write(Active::new())
-}
-
+/// Creates the session on the stack, in a function of its own, which uses that much stack at the start only.
 #[inline(never)]
 fn session(
     place: &'static mut MaybeUninit<Session<'static>>,
     board: Board,
-    spare: &'static mut Active,
+    next: &'static mut NextScene,
 ) -> &'static mut Session<'static> {
-    place.write(Session::new(board, &POOL, spare))
+    place.write(Session::new(board, &POOL, next))
 }

@@ -20,43 +20,46 @@ pub struct Active {
     pub voltage_max_v_rms: f32,
     /// Ticks without a frame from the host after which the board disarms.
     pub host_timeout_ticks: u32,
-    /// Whether to extrapolate the finger's position along its track. Otherwise the last measured position is used.
-    pub prediction: bool,
-    /// Table from electric friction to voltage; `None` without a scene.
-    pub table: Option<InverseTable>,
+    /// Whether to use the last measured position of the finger. Otherwise it is extrapolated along its track.
+    pub prediction_off: bool,
+    /// Table from electric friction to voltage; empty without a scene.
+    pub table: InverseTable,
     /// The layers.
     pub layers: ActiveLayers,
 }
 
 impl Active {
-    /// Coefficients without a scene.
+    /// Coefficients without a scene. All bits are zero, so that a static of them takes no flash.
     #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
     pub const fn new() -> Self {
         Self {
             layers: ActiveLayers::EMPTY,
-            table: None,
+            table: InverseTable::EMPTY,
             carrier: CarrierTiming::ZERO_OUTPUT,
             slew_step_v: 0.0,
             voltage_max_v_rms: 0.0,
             host_timeout_ticks: 0,
-            prediction: true,
+            prediction_off: false,
         }
     }
 
     /// Removes the scene.
     pub fn unload(&mut self) {
         self.layers.clear();
-        self.table = None;
+        self.table.clear();
         self.carrier = CarrierTiming::ZERO_OUTPUT;
         self.slew_step_v = 0.0;
         self.voltage_max_v_rms = 0.0;
         self.host_timeout_ticks = 0;
-        self.prediction = true;
+        self.prediction_off = false;
     }
 
     /// Lowers coefficients to a board's ceilings, and returns whether any was above. No tick has to check the ceilings
-    /// then, since its code is at most the carrier's.
+    /// then, since its code is at most the carrier's. Without a scene, the output is zero.
     pub(crate) fn limit_to(&mut self, ceilings: &Ceilings) -> bool {
+        if self.table.is_empty() {
+            return false;
+        }
         let carrier = self.carrier.within(ceilings);
         let voltage_max_v_rms =
             from_zero_to(ceilings.voltage_max_v_peak(carrier.half_period_ticks), self.voltage_max_v_rms);
@@ -76,7 +79,7 @@ impl Active {
     /// The inverse table; `None` without a scene.
     #[inline]
     pub(crate) fn table(&self) -> Option<&InverseTable> {
-        self.table.as_ref()
+        if self.table.is_empty() { None } else { Some(&self.table) }
     }
 
     /// Whether a layer plays the host's stream.

@@ -37,7 +37,14 @@ pub struct CarrierTiming {
 
 impl CarrierTiming {
     /// A carrier whose output is zero.
-    pub const ZERO_OUTPUT: Self = Self::new(Waveform::Square, 20, 0.0, DacCode::ZERO);
+    pub const ZERO_OUTPUT: Self = Self {
+        waveform: Waveform::Square,
+        half_period_ticks: 0,
+        codes_per_v_rms: 0.0,
+        code_max: DacCode::ZERO,
+        integral_max: I17F15::ZERO,
+        turns_per_tick: 0.0,
+    };
 
     /// A carrier whose integral stays within one half period at full voltage. A negative `code_max` counts as zero.
     pub const fn new(waveform: Waveform, half_period_ticks: u32, codes_per_v_rms: f32, code_max: DacCode) -> Self {
@@ -92,7 +99,11 @@ impl Carrier {
 
     /// Continues with the timing of another scene. The integral belongs to the electrode and is kept.
     pub(crate) fn retime(&mut self, timing: &CarrierTiming) {
-        self.left_ticks = self.left_ticks.min(timing.half_period_ticks);
+        self.left_ticks = match self.left_ticks {
+            // There was no carrier.
+            0 => timing.ticks_from_crest(),
+            left_ticks => left_ticks.min(timing.half_period_ticks),
+        };
     }
 
     /// Prepares the restart from zero output: a quarter period before an edge, with the sign that moves the integral

@@ -3,7 +3,7 @@
 //! The parts are independent. The command handler passes values between them; orders of [`Scenes`] go through the
 //! [`Orders`](crate::states::Orders) of [`States`].
 
-use frixel_control::{Active, Board, Order, Status, TickMeter};
+use frixel_control::{Board, Order, Status, TickMeter};
 use frixel_layers::BitmapPool;
 use frixel_wire::fault::{Flags, State};
 use frixel_wire::hello::notice;
@@ -13,7 +13,7 @@ use frixel_wire::payload::{ParseError, Payload};
 use crate::hello::hello;
 use crate::link::Link;
 use crate::motion::{Motion, ONLY_FINGER};
-use crate::scene::{PROGRESS_PERIOD_S, Removal, Scenes};
+use crate::scene::{NextScene, PROGRESS_PERIOD_S, Removal, Scenes};
 use crate::states::States;
 
 /// The command handler.
@@ -28,11 +28,11 @@ pub(crate) struct Commands<'a> {
 }
 
 impl<'a> Commands<'a> {
-    pub(crate) fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+    pub(crate) fn new(board: Board, pool: &'a BitmapPool, next: &'a mut NextScene) -> Self {
         Self {
             board,
             link: Link::new(board.limits.receive_window_bytes),
-            scenes: Scenes::new(pool, spare),
+            scenes: Scenes::new(pool, next),
             motion: Motion::new(&board),
             states: States::new(),
             tick_meter: None,

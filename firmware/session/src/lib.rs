@@ -13,13 +13,13 @@
 //! ```
 //! use frixel_control::{Active, Board, Sense, Ticker};
 //! use frixel_layers::BitmapPool;
-//! use frixel_session::{Session, Touch};
+//! use frixel_session::{NextScene, Session, Touch};
 //!
 //! let board = Board::SIMULATOR;
 //! let pool = BitmapPool::new();
-//! let (mut first, mut second) = (Active::new(), Active::new());
-//! let mut ticker = Ticker::new(&board, &pool, &mut first);
-//! let mut session = Session::new(board, &pool, &mut second);
+//! let (mut playing, mut next) = (Active::new(), NextScene::new());
+//! let mut ticker = Ticker::new(&board, &pool, &mut playing);
+//! let mut session = Session::new(board, &pool, &mut next);
 //!
 //! session.receive(&[0, 0, 0], &ticker.status()); // bytes from the serial line
 //! session.touch(Touch::Down { x_m: 0.02, y_m: 0.03, age_ticks: 0 }, 1); // from the touch source
@@ -67,5 +67,5 @@ pub mod store;
 pub use frixel_wire::touch::Touch;
 pub use motion::Tracker;
 pub use queues::{Queues, SessionEnds, TickEnds};
-pub use scene::{TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
+pub use scene::{NextScene, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
 pub use session::Session;

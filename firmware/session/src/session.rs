@@ -9,8 +9,8 @@ use frixel_wire::frame::Decoder;
 use frixel_wire::message::Refusal;
 use frixel_wire::payload::Payload;
 
-use crate::Touch;
 use crate::commands::Commands;
+use crate::{NextScene, Touch};
 
 /// The board's end of the serial line.
 pub struct Session<'a> {
@@ -19,9 +19,9 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// A session that stores bitmaps in `pool` and builds the next scene in `spare`.
-    pub fn new(board: Board, pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
-        Self { decoder: Decoder::new(), commands: Commands::new(board, pool, spare) }
+    /// A session that stores bitmaps in `pool` and builds the next scene in `next`.
+    pub fn new(board: Board, pool: &'a BitmapPool, next: &'a mut NextScene) -> Self {
+        Self { decoder: Decoder::new(), commands: Commands::new(board, pool, next) }
     }
 
     /// Stores the samples of streams in `buffer` from now on. The ticker plays them from there.

@@ -11,7 +11,7 @@ use frixel_control::{Active, Board, Order, Sense, Status, Ticker, Track};
 use frixel_hil_sim::emulated::{AppliedOrder, Watched};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_layers::BitmapPool;
-use frixel_session::Session;
+use frixel_session::{NextScene, Session};
 
 use super::bench::BOARD;
 
@@ -44,11 +44,11 @@ impl Twin {
 
     fn new(bytes: &[u8]) -> Self {
         let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
-        let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
-        let ticker = Ticker::new(&BOARD, pool, first);
+        let (playing, next) = (Box::leak(Box::new(Active::new())), Box::leak(Box::new(NextScene::new())));
+        let ticker = Ticker::new(&BOARD, pool, playing);
         let nowhere = Stroke::through(&[(0.0, None)]).unwrap();
         Self {
-            session: Session::new(Board { touch_from_host: true, ..BOARD }, pool, second),
+            session: Session::new(Board { touch_from_host: true, ..BOARD }, pool, next),
             statuses: vec![ticker.status()],
             ticker,
             frames: bytes.split_inclusive(|byte| *byte == 0).map(<[u8]>::to_vec).collect(),

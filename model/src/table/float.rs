@@ -17,16 +17,15 @@ pub(crate) const FRICTION_MAX_N: f32 = 1e12;
 #[repr(C)]
 pub(crate) struct RowGrid {
     first_bits: u32,
-    /// Number of rows per 2^32 bit patterns.
-    density: NonZeroU32,
+    /// Number of rows per 2^32 bit patterns; zero in an empty grid.
+    density: u32,
     friction_max_n: f32,
     voltage_max_v_rms: f32,
 }
 
 impl RowGrid {
-    /// A placeholder grid.
-    pub(crate) const EMPTY: Self =
-        Self { first_bits: 0, density: NonZeroU32::MIN, friction_max_n: 0.0, voltage_max_v_rms: 0.0 };
+    /// A grid without rows, all of whose bits are zero.
+    pub(crate) const EMPTY: Self = Self { first_bits: 0, density: 0, friction_max_n: 0.0, voltage_max_v_rms: 0.0 };
 
     /// A grid of `rows` rows of about `2^32/density` patterns each, the last one up to and including `friction_max_n`.
     pub(crate) fn new(
@@ -36,8 +35,14 @@ impl RowGrid {
         voltage_max_v_rms: f32,
     ) -> Result<Self, TableError> {
         let end_bits = u64::from(friction_max_n.to_bits()) + 1;
+        let density = density.get();
         let first_bits = end_bits.checked_sub(offset(rows, density)).ok_or(TableError::Unrepresentable)?;
         Ok(Self { first_bits: first_bits as u32, density, friction_max_n, voltage_max_v_rms })
+    }
+
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.density == 0
     }
 
     /// Start of a row; the end of the last row is the start of the row after it.
@@ -51,7 +56,7 @@ impl RowGrid {
         // Below the range, the subtraction wraps to a large number; the bits of negative numbers and NaN are large
         // themselves.
         let patterns = friction_n.to_bits().wrapping_sub(self.first_bits);
-        ((u64::from(patterns) * u64::from(self.density.get())) >> 32) as usize
+        ((u64::from(patterns) * u64::from(self.density)) >> 32) as usize
     }
 
     /// The row after the one that contains `up_to_n`, or `least_n` if that is larger; `rows` if `up_to_n` is
@@ -122,8 +127,9 @@ impl RowGrid {
 }
 
 /// Number of patterns from the start of the first row to that of row `row`: the smallest whose product with `density`
-/// reaches it.
-fn offset(row: usize, density: NonZeroU32) -> u64 {
+/// reaches it; zero without a density.
+fn offset(row: usize, density: u32) -> u64 {
+    let Some(density) = NonZeroU32::new(density) else { return 0 };
     let (patterns, remainder) = divide_wide(row as u32, 0, density);
     patterns + u64::from(remainder > 0)
 }

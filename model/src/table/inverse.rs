@@ -53,6 +53,9 @@ impl InverseTable {
     /// 1.8e-6 under 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
+    /// A table of zero volts for every friction. All its bits are zero, so that a static of it takes no flash.
+    pub const EMPTY: Self = Self { grid: RowGrid::EMPTY, rows: [[0.0; 4]; ROWS] };
+
     /// Bytes of a row.
     pub const ROW_BYTES: usize = size_of::<[f32; 4]>();
 
@@ -84,26 +87,27 @@ impl InverseTable {
         voltage_max_v_rms: f32,
         up_to_n: f32,
     ) -> Result<Self, TableError> {
-        let (mut table, mut filling) = Self::begin(finger, gap_m, normal_load_n, voltage_max_v_rms, up_to_n)?;
-        filling.fill(&mut table, ROWS)?;
+        let mut table = Self::EMPTY;
+        table.begin(finger, gap_m, normal_load_n, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
         Ok(table)
     }
 
-    /// Starts building the table of [`Self::of_finger`] in steps, so that a board can do other work in between. The
-    /// table is only valid once [`InverseTableFilling::fill`] has finished.
+    /// Starts building the table of [`Self::of_finger`] in place and in steps, so that a board can do other work in
+    /// between. The table is only valid once [`InverseTableFilling::fill`] has finished.
     #[inline(never)]
     pub fn begin(
+        &mut self,
         finger: &Finger<f32>,
         gap_m: f32,
         normal_load_n: f32,
         voltage_max_v_rms: f32,
         up_to_n: f32,
-    ) -> Result<(Self, InverseTableFilling), TableError> {
+    ) -> Result<InverseTableFilling, TableError> {
         if !(voltage_max_v_rms.is_finite() && voltage_max_v_rms > 0.0) {
             return Err(TableError::Voltage);
         }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        Self::begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), up_to_n)
+        self.begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), up_to_n)
     }
 
     /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The
@@ -123,24 +127,27 @@ impl InverseTable {
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn of_law(exponent: f32, points: &[LawPoint], voltage_max_v_rms: f32, up_to_n: f32) -> Result<Self, LawError> {
-        let (mut table, mut filling) = Self::begin_law(exponent, points, voltage_max_v_rms, up_to_n)?;
-        filling.fill(&mut table, ROWS)?;
+        let mut table = Self::EMPTY;
+        table.begin_law(exponent, points, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
         Ok(table)
     }
 
-    /// Starts building the table of [`Self::of_law`] in steps, as [`Self::begin`] does for a finger.
+    /// Starts building the table of [`Self::of_law`] in place and in steps, as [`Self::begin`] does for a finger.
     #[inline(never)]
     pub fn begin_law(
+        &mut self,
         exponent: f32,
         points: &[LawPoint],
         voltage_max_v_rms: f32,
         up_to_n: f32,
-    ) -> Result<(Self, EmpiricalTableFilling), LawError> {
+    ) -> Result<EmpiricalTableFilling, LawError> {
         let curve = EmpiricalLaw::new(exponent, points, voltage_max_v_rms)?;
         let grid = curve.grid();
         let end = grid.end_row(ROWS, up_to_n, grid.start_n(0));
         let start = grid.start(0, &curve);
-        Ok((Self { grid, rows: [[0.0; 4]; ROWS] }, EmpiricalTableFilling(Filling { curve, rows: 0..end, start })))
+        self.grid = grid;
+        self.rows.fill([0.0; 4]);
+        Ok(EmpiricalTableFilling(Filling { curve, rows: 0..end, start }))
     }
 
     fn in_double_single(
@@ -148,16 +155,17 @@ impl InverseTable {
         voltage_max_v_rms: DoubleSingle,
         up_to_n: f32,
     ) -> Result<Self, TableError> {
-        let (mut table, mut filling) = Self::begin_in_double_single(contact, voltage_max_v_rms, up_to_n)?;
-        filling.fill(&mut table, ROWS)?;
+        let mut table = Self::EMPTY;
+        table.begin_in_double_single(contact, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
         Ok(table)
     }
 
     fn begin_in_double_single(
+        &mut self,
         contact: LoadedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
         up_to_n: f32,
-    ) -> Result<(Self, InverseTableFilling), TableError> {
+    ) -> Result<InverseTableFilling, TableError> {
         let largest = round_down(voltage_max_v_rms);
         let knee_v_rms = KNEE_V_RMS.min(largest * KNEE_PART);
         let knee_n = round_down(contact.electric_friction_n(DoubleSingle::from(knee_v_rms)));
@@ -177,8 +185,24 @@ impl InverseTable {
         let start = grid.start(knee_row, &contact);
         let (knee_start_n, knee_start_v_rms) = start;
         let line = [0.0, (knee_start_v_rms / knee_start_n).to_f32(), 0.0, 0.0];
-        let filling = InverseTableFilling(Filling { curve: contact, rows: knee_row..end, start });
-        Ok((Self { grid, rows: [line; ROWS] }, filling))
+        self.grid = grid;
+        self.rows.fill(line);
+        Ok(InverseTableFilling(Filling { curve: contact, rows: knee_row..end, start }))
+    }
+
+    /// Makes the table [empty](Self::EMPTY), in a few instructions.
+    pub fn clear(&mut self) {
+        self.grid = RowGrid::EMPTY;
+        // An empty grid leads to the first row, whatever the friction.
+        if let Some(first) = self.rows.first_mut() {
+            *first = [0.0; 4];
+        }
+    }
+
+    /// Whether the table is [empty](Self::EMPTY).
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.grid.is_empty()
     }
 
     /// Number of rows that hold a piece of the curve. The others cost no evaluation of the closed form.
@@ -219,7 +243,7 @@ impl InverseTableFilling {
     }
 
     /// Computes the next `rows_max` rows, with three evaluations of the closed form each. `table` must be the table
-    /// that [`InverseTable::begin`] returned with `self`. Returns whether the table is finished.
+    /// that was begun. Returns whether it is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
         self.0.fill(table, rows_max)
     }
@@ -235,8 +259,8 @@ impl EmpiricalTableFilling {
         self.0.rows.len()
     }
 
-    /// Computes the next `rows_max` rows, with three powers each. `table` must be the table that
-    /// [`InverseTable::begin_law`] returned with `self`. Returns whether the table is finished.
+    /// Computes the next `rows_max` rows, with three powers each. `table` must be the table that was begun. Returns
+    /// whether it is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, LawError> {
         let found = table.electric_friction_max_n();
         self.0.fill(table, rows_max).map_err(|_: TableError| LawError::Friction { found })

@@ -2,7 +2,7 @@
 
 use frixel_control::{Active, Board, Ticker};
 use frixel_layers::BitmapPool;
-use frixel_session::Session;
+use frixel_session::{NextScene, Session};
 use frixel_testkit::IdealMonitor;
 use frixel_wire::hello::{BoardKind, BoardLimits};
 
@@ -27,8 +27,8 @@ pub(crate) const BUILT_IN: BoardLimits = BoardLimits { series_resistance_ohm: 68
 /// Session and ticker, whose memory lives as long as the program.
 pub(crate) fn firmware() -> (Session<'static>, Ticker<'static>) {
     let pool: &BitmapPool = Box::leak(Box::new(BitmapPool::new()));
-    let [first, second] = [(); 2].map(|()| Box::leak(Box::new(Active::new())));
-    (Session::new(BOARD, pool, second), Ticker::new(&BOARD, pool, first))
+    let (playing, next) = (Box::leak(Box::new(Active::new())), Box::leak(Box::new(NextScene::new())));
+    (Session::new(BOARD, pool, next), Ticker::new(&BOARD, pool, playing))
 }
 
 /// Its monitor.

@@ -190,7 +190,7 @@ impl<'a> Ticker<'a> {
     /// position.
     #[inline]
     fn elapsed_s(&self, track: &Track) -> f32 {
-        if self.active.prediction { track.elapsed_s(self.tick, self.timing.tick_period_s) } else { 0.0 }
+        if self.active.prediction_off { 0.0 } else { track.elapsed_s(self.tick, self.timing.tick_period_s) }
     }
 
     /// Sets the output to zero at once, without the slew limit.

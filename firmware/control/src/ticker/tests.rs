@@ -27,15 +27,13 @@ const TRACK: Track = Track {
 fn active(carrier: CarrierTiming, slew_step_v: f32, voltage_max_v_rms: f32, host_timeout_ticks: u32) -> Active {
     let Header { finger_radius_m, stiffness_pa_per_m, friction_coefficient, .. } = HEADER;
     let finger = FingerModel { radius_m: finger_radius_m, stiffness_pa_per_m, friction_coefficient };
-    let (mut table, mut filling) =
-        InverseTable::begin(&finger, HEADER.effective_gap_m, HEADER.normal_load_n, 150.0, f32::INFINITY).unwrap();
-    while !filling.fill(&mut table, 1_000).unwrap() {}
     let mut active = Active::new();
+    active.table =
+        InverseTable::of_finger(&finger, HEADER.effective_gap_m, HEADER.normal_load_n, 150.0, f32::INFINITY).unwrap();
     let layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
     active.layers.begin(&HEADER, core::iter::empty());
     active.layers.push(&record, BOARD.tick_hz, &|_| None).unwrap();
-    active.table = Some(table);
     active.carrier = carrier;
     active.slew_step_v = slew_step_v;
     active.voltage_max_v_rms = voltage_max_v_rms;

@@ -97,26 +97,23 @@ impl Loading {
                 }
             }
             Self::Table => {
-                let voltage_max_v_rms = active.voltage_max_v_rms;
-                if let Some(law) = header.law() {
-                    let (table, filling) = begin_law_table(header, law, voltage_max_v_rms).map_err(Refusal::Config)?;
-                    active.table = Some(table);
-                    Self::LawRows(filling)
-                } else {
-                    let (table, filling) = begin_table(header, voltage_max_v_rms).map_err(Refusal::Config)?;
-                    active.table = Some(table);
-                    Self::Rows(filling)
-                }
+                let Active { table, voltage_max_v_rms, .. } = active;
+                let begun = match header.law() {
+                    Some(law) => begin_law_table(table, header, law, *voltage_max_v_rms).map(Self::LawRows),
+                    None => begin_table(table, header, *voltage_max_v_rms).map(Self::Rows),
+                };
+                begun.map_err(Refusal::Config)?
             }
             Self::Rows(filling) => {
-                let Some(table) = &mut active.table else { return Ok(true) };
                 return filling
-                    .fill(table, ROWS_PER_STEP)
+                    .fill(&mut active.table, ROWS_PER_STEP)
                     .map_err(|error| Refusal::Config(no_table(&error, header, active.voltage_max_v_rms)));
             }
             Self::LawRows(filling) => {
-                let (Some(table), Some(law)) = (&mut active.table, header.law()) else { return Ok(true) };
-                return filling.fill(table, LAW_ROWS_PER_STEP).map_err(|error| Refusal::Config(no_law(&error, law)));
+                let Some(law) = header.law() else { return Ok(true) };
+                return filling
+                    .fill(&mut active.table, LAW_ROWS_PER_STEP)
+                    .map_err(|error| Refusal::Config(no_law(&error, law)));
             }
         };
         Ok(false)
@@ -134,7 +131,7 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
     active.slew_step_v = header.slew_v_per_s * board.tick_period_s();
     active.host_timeout_ticks = board.ticks(header.host_timeout_s);
-    active.prediction = header.prediction;
+    active.prediction_off = !header.prediction;
     active.layers.begin(header, scene.points());
     Ok(())
 }
@@ -195,21 +192,27 @@ pub struct TableRows {
 }
 
 /// Begins the inverse table of a scene's finger, coating and load, up to the scene's largest target friction.
-fn begin_table(header: &Header, voltage_max_v_rms: f32) -> Result<(InverseTable, InverseTableFilling), ConfigRefusal> {
+fn begin_table(
+    table: &mut InverseTable,
+    header: &Header,
+    voltage_max_v_rms: f32,
+) -> Result<InverseTableFilling, ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
-    InverseTable::begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
+    table
+        .begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
 /// Begins the inverse table of a scene's empirical law.
 fn begin_law_table(
+    table: &mut InverseTable,
     header: &Header,
     law: &FingerLaw,
     voltage_max_v_rms: f32,
-) -> Result<(InverseTable, EmpiricalTableFilling), ConfigRefusal> {
+) -> Result<EmpiricalTableFilling, ConfigRefusal> {
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
-    InverseTable::begin_law(law.exponent(), law.points(), voltage_max_v_rms, max_n).map_err(|error| no_law(&error, law))
+    table.begin_law(law.exponent(), law.points(), voltage_max_v_rms, max_n).map_err(|error| no_law(&error, law))
 }
 
 /// The invalid number of a law, and its valid range.
@@ -273,11 +276,12 @@ pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
     let header = scene.header();
     let voltage_max_v_rms = voltage_max_v_rms(header, board)?;
     let rows = |header: &Header| {
-        if let Some(law) = header.law() {
-            let begun = begin_law_table(header, law, voltage_max_v_rms);
-            return begun.map(|(_, filling)| filling.rows()).map_err(Refusal::Config);
-        }
-        begin_table(header, voltage_max_v_rms).map(|(_, filling)| filling.rows()).map_err(Refusal::Config)
+        let mut table = InverseTable::EMPTY;
+        let begun = match header.law() {
+            Some(law) => begin_law_table(&mut table, header, law, voltage_max_v_rms).map(|filling| filling.rows()),
+            None => begin_table(&mut table, header, voltage_max_v_rms).map(|filling| filling.rows()),
+        };
+        begun.map_err(Refusal::Config)
     };
     let whole = Header { electric_friction_max_n: None, ..*header };
     Ok(TableRows { filled: rows(header)?, whole: rows(&whole)? })

@@ -107,7 +107,7 @@ impl<'a> Scenes<'a> {
     /// Takes a chunk of the current upload. Returns the next expected chunk if it is to be reported.
     pub(crate) fn take_chunk(&mut self, number: u16, bytes: &[u8]) -> Option<u16> {
         let upload = self.upload.as_mut()?;
-        match upload.take(number, bytes, &mut self.staging, self.pool) {
+        match upload.take(number, bytes, self.staging, self.pool) {
             ChunkReport::Progress { next_chunk } => Some(next_chunk),
             ChunkReport::Nothing => None,
         }

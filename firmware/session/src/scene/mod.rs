@@ -32,12 +32,27 @@ use upload::{Staging, Upload};
 /// CRC-32 names of bitmaps.
 type BitmapNames = Vec<u32, RECORDS_MAX>;
 
+/// Memory of the scene after the one that plays: its bytes while they are uploaded, and its coefficients. All bits are
+/// zero at first, so that a static of it takes no flash.
+pub struct NextScene {
+    staging: Staging,
+    coefficients: Active,
+}
+
+impl NextScene {
+    /// Memory without a scene.
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    pub const fn new() -> Self {
+        Self { staging: Staging::new(), coefficients: Active::new() }
+    }
+}
+
 /// The uploaded, the next and the committed scene.
 pub(crate) struct Scenes<'a> {
     pool: &'a BitmapPool,
     directory: Directory,
     upload: Option<Upload>,
-    staging: Staging,
+    staging: &'a mut Staging,
     /// Bitmaps announced since the last commit: those of the next scene.
     announced_bitmaps: BitmapNames,
     /// Buffer for the coefficients of the next scene; `None` until the ticker has returned the previous scene's.
@@ -60,14 +75,14 @@ struct Committed {
 }
 
 impl<'a> Scenes<'a> {
-    pub(crate) fn new(pool: &'a BitmapPool, spare: &'a mut Active) -> Self {
+    pub(crate) fn new(pool: &'a BitmapPool, NextScene { staging, coefficients }: &'a mut NextScene) -> Self {
         Self {
             pool,
             directory: Directory::default(),
             upload: None,
-            staging: Staging::new(),
+            staging,
             announced_bitmaps: Vec::new(),
-            spare: Some(spare),
+            spare: Some(coefficients),
             commit: None,
             committed: Committed::default(),
             stream: Stream::new(),

@@ -16,7 +16,7 @@ pub mod flash;
 use frixel_control::StreamBuffer;
 use frixel_control::{Active, Board, Drive, Sense, Status, Ticker};
 use frixel_layers::{Bitmap, BitmapPool, Layer};
-use frixel_session::{Session, Touch};
+use frixel_session::{NextScene, Session, Touch};
 use frixel_testkit::IdealMonitor;
 pub use frixel_testkit::{HEADER, constant, record, scene, scene_with_points};
 use frixel_wire::frame::{Decoder, FRAME_MAX_LEN, crc32};
@@ -75,7 +75,7 @@ impl TestBoard {
         let pool: &BitmapPool = leaked(BitmapPool::new());
         let mut test_board = Self {
             ticker: Ticker::new(&board, pool, leaked(Active::new())),
-            session: Session::new(board, pool, leaked(Active::new())),
+            session: Session::new(board, pool, leaked(NextScene::new())),
             sense: Sense { arm_switch: true, ..Sense::default() },
             touch: None,
             messages: Vec::new(),
