@@ -27,7 +27,8 @@ pub struct BoardParts {
     pub tick_ends: TickEnds,
 }
 
-/// Memory that is too large for the stack. It is a static in a board's `main`, which holds the only reference.
+/// Memory that is too large for the stack: a `static mut` in a board's `main`, which holds the only reference. All its
+/// bits are zero, so that it takes no flash; `singleton!` would make it on the stack.
 pub struct Memory {
     playing: Active,
     next: NextScene,

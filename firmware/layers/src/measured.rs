@@ -5,13 +5,13 @@
 use crate::cost::Cost;
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: Cost = Cost::new(992, 9953);
+pub(crate) const EMPTY: Cost = Cost::new(991, 9952);
 
 // What a sine carrier adds.
 pub(crate) const SINE_CARRIER: Cost = Cost::new(32, 2623);
 
 // A curve, and each of its points.
-pub(crate) const SPEED: Cost = Cost::new(157, 3874);
+pub(crate) const SPEED: Cost = Cost::new(157, 3873);
 pub(crate) const SPEED_POINT: Cost = Cost::new(8, 117);
 
 // The stream's own work, wherever the finger is.
@@ -21,7 +21,7 @@ pub(crate) const STREAM_ELSEWHERE: Cost = Cost::new(94, 983);
 pub(crate) const ELLIPSE: Cost = Cost::new(8, 1138);
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.
-pub(crate) const POLYGON: Cost = Cost::new(33, 564);
+pub(crate) const POLYGON: Cost = Cost::new(33, 563);
 pub(crate) const POLYGON_EDGE: Cost = Cost::new(19, 80);
 pub(crate) const POLYGON_EDGE_LEVEL: Cost = Cost::new(26, 969);
 
@@ -29,20 +29,20 @@ pub(crate) const POLYGON_EDGE_LEVEL: Cost = Cost::new(26, 969);
 pub(crate) const LAYERS: &[(&str, Cost)] = &[
     ("bitmap", Cost::new(227, 4492)),
     ("bitmap_tiled", Cost::new(282, 7087)),
-    ("button", Cost::new(228, 4411)),
+    ("button", Cost::new(228, 4410)),
     ("constant", Cost::new(76, 242)),
     ("direction", Cost::new(178, 4547)),
     ("drift", Cost::new(44, 438)),
-    ("drifting_rings", Cost::new(84, 3398)),
+    ("drifting_rings", Cost::new(84, 3397)),
     ("edge", Cost::new(184, 4573)),
     ("noise", Cost::new(406, 23304)),
     ("rings", Cost::new(40, 2920)),
     ("saw", Cost::new(122, 2024)),
     ("sine", Cost::new(143, 3413)),
     ("spokes", Cost::new(91, 3764)),
-    ("square", Cost::new(135, 1901)),
-    ("stream", Cost::new(101, 1005)),
-    ("triangle", Cost::new(127, 2365)),
+    ("square", Cost::new(135, 1900)),
+    ("stream", Cost::new(101, 1004)),
+    ("triangle", Cost::new(127, 2364)),
     ("vibration_sine", Cost::new(187, 3674)),
-    ("vibration_square", Cost::new(150, 1517)),
+    ("vibration_square", Cost::new(150, 1516)),
 ];

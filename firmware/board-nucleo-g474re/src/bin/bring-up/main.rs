@@ -18,6 +18,7 @@ use board_nucleo_g474re::{board, dac, output, tick, watchdog};
 use cortex_m_rt::entry;
 use defmt_rtt as _;
 use frixel_board::bring_up::{self, Injection, TestOutput};
+use frixel_board::memory::Memory;
 use frixel_control::Board;
 use frixel_drivers::fault_record::Text;
 use frixel_session::store::CeilingPolicy;
@@ -33,6 +34,7 @@ type Terminal = frixel_board::terminal::Terminal<Serial>;
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+    static mut MEMORY: Memory = Memory::new();
 
     let Started { boot, output, period, last_reset } = begin(TEXT);
     let inputs = tick::start_inputs(&boot);
@@ -63,7 +65,7 @@ fn main() -> ! {
     // A capacitor stands in for the electrode, and nobody touches it: the script asks for that before any voltage.
     let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..limits };
     let board = Board { limits: untouched, ..board::board(&last_reset, None) };
-    let stage = Stage::Still(Still { boot, output, period, inputs, frames, dac, periods: 0 });
+    let stage = Stage::Still(Still { memory: MEMORY, boot, output, period, inputs, frames, dac, periods: 0 });
     let mut bench = NucleoBench { board, terminal, flash, injection, stage };
     match bring_up::run(&mut bench, &limits) {
         Ok(limits) => {

@@ -5,12 +5,9 @@ use board_nucleo_g474re::board::Nucleo;
 use board_nucleo_g474re::indicator;
 use board_nucleo_g474re::tick;
 use board_nucleo_g474re::watchdog::Watchdog;
-use cortex_m::singleton;
 use frixel_board::main_loop::MainLoop;
-use frixel_board::memory::Memory;
 use frixel_board::start::Parts;
 use frixel_control::Board;
-use frixel_cortex_m::unreachable_state;
 use stm32_metapac::interrupt;
 
 use crate::still::Still;
@@ -19,8 +16,7 @@ frixel_cortex_m::tick_interrupt!(Nucleo, TIM3);
 
 /// Starts the tick and the watchdog, and returns the main loop, whose turns feed it. Called once.
 pub(crate) fn tick(board: Board, still: Still) -> MainLoop<Nucleo> {
-    let Some(memory) = singleton!(: Memory = Memory::new()) else { unreachable_state() };
-    let Still { boot, output, period, inputs: (ready, switch), frames, dac, periods: _ } = still;
+    let Still { memory, boot, output, period, inputs: (ready, switch), frames, dac, periods: _ } = still;
     let (light, monitor) = (indicator::start(), Adc::new(&boot));
     let parts = Parts { period, frames, dac, enable: output, ready, monitor, switch, light, serial: None };
     parts.start(memory.make(board), &tick::SHARED, |tick| tick::start(&TICK, boot, tick), Watchdog::start)

@@ -12,6 +12,7 @@ use board_nucleo_g474re::{tick, watchdog};
 use cortex_m::peripheral::DWT;
 use frixel_board::bring_up::{Sync, TestOutput};
 use frixel_board::hardware::DacFrames as _;
+use frixel_board::memory::Memory;
 use frixel_cortex_m::Boot;
 use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_wire::dac_code::DacCode;
@@ -28,6 +29,7 @@ const PERIODS_PER_2_MS: u32 = TICK_HZ / 500;
 
 /// The parts that the tick takes over when it starts.
 pub(crate) struct Still {
+    pub(crate) memory: &'static mut Memory,
     pub(crate) boot: Boot,
     pub(crate) period: Period,
     pub(crate) inputs: (Pin, Pin),

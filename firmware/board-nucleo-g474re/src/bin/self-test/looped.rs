@@ -12,6 +12,7 @@ use board_nucleo_g474re::period::{LATCH_CYCLES, Period};
 use board_nucleo_g474re::{tick, watchdog};
 use frixel_board::hardware::DacFrames as _;
 use frixel_board::main_loop::MainLoop;
+use frixel_board::memory::Memory;
 use frixel_board::self_test::{Clocks, Fall, Inputs, Levels, Line, LoopedBoard, Round, Wire};
 use frixel_control::Board;
 use frixel_cortex_m::{Boot, unreachable_state};
@@ -44,6 +45,7 @@ pub(crate) enum Stage {
 
 /// The pins before the tick runs.
 pub(crate) struct Still {
+    pub(crate) memory: &'static mut Memory,
     pub(crate) boot: Boot,
     pub(crate) period: Period,
     pub(crate) output: Output,

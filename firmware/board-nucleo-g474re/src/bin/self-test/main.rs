@@ -16,6 +16,7 @@ use board_nucleo_g474re::start::{Started, begin};
 use board_nucleo_g474re::{board, dac, output, tick};
 use cortex_m_rt::entry;
 use defmt_rtt as _;
+use frixel_board::memory::Memory;
 use frixel_board::self_test;
 use frixel_control::Board;
 use frixel_drivers::ad5761r::FrameDevice;
@@ -31,6 +32,7 @@ type Terminal = frixel_board::terminal::Terminal<Serial>;
 #[entry]
 fn main() -> ! {
     static mut TEXT: Text = [0; FAULT_TEXT_MAX_LEN];
+    static mut MEMORY: Memory = Memory::new();
 
     let Started { boot, output, period, last_reset } = begin(TEXT);
     let _ = tick::start_inputs(&boot);
@@ -43,7 +45,8 @@ fn main() -> ! {
         terminal.say(format_args!("The last start ended in {fault} ({text})"));
     }
     let adc = Adc::new(&boot);
-    let stage = Stage::Still(Still { boot, output, period, frames, captures: Captures::start(), adc, spi });
+    let captures = Captures::start();
+    let stage = Stage::Still(Still { memory: MEMORY, boot, output, period, frames, captures, adc, spi });
     // There is no amplifier: it arms whatever the option bytes are.
     let board = Board { notices: 0, ..board::board(&last_reset, None) };
     let mut looped = Looped { board, terminal, stage };

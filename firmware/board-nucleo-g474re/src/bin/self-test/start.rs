@@ -2,12 +2,9 @@
 
 use board_nucleo_g474re::watchdog::Watchdog;
 use board_nucleo_g474re::{indicator, tick};
-use cortex_m::singleton;
 use frixel_board::main_loop::MainLoop;
-use frixel_board::memory::Memory;
 use frixel_board::start::Parts;
 use frixel_control::Board;
-use frixel_cortex_m::unreachable_state;
 use frixel_drivers::amplifier::KickedEnable as _;
 use frixel_drivers::pin::DirectPin;
 use stm32_metapac::interrupt;
@@ -21,8 +18,7 @@ frixel_cortex_m::tick_interrupt!(Wired, TIM3);
 /// Starts the tick and the watchdog, and returns the main loop, whose turns feed it, and the captures. Called once. The
 /// enable is low from here on.
 pub(crate) fn tick(board: Board, still: Still) -> (MainLoop<Wired>, Captures) {
-    let Some(memory) = singleton!(: Memory = Memory::new()) else { unreachable_state() };
-    let Still { boot, mut output, period, frames, captures, adc, spi: _ } = still;
+    let Still { memory, boot, mut output, period, frames, captures, adc, spi: _ } = still;
     output.disable();
     let parts = Parts {
         period,
