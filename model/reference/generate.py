@@ -62,7 +62,7 @@ def exact(p):
 
 
 def condition(function, p, names):
-    """Largest over the answers of the sum of relative changes over those of the named inputs."""
+    """Largest condition number of the answers: the sum of their relative sensitivities to the named inputs."""
     step = mpf("1e-25")
     base = function(p)
     sums = [mpf(0)] * len(base)
@@ -154,14 +154,14 @@ class Fixtures:
         try:
             (voltage,) = call(q)
         except tuple(STATUS) as error:
-            # In f32 a friction within rounding of natural friction may fall on either side of it.
+            # In f32, a friction within rounding of natural friction may fall on either side.
             clear = abs(q["wanted"] - q["mu"] * q["load"]) > mpf("1e-5") * q["wanted"]
             row.update(status=STATUS[type(error)], f32=int(clear or electric is not None))
             self.inverse.append(row)
             return
         c = condition(call, q, (*CONDITIONED, "wanted")) if voltage and variant in WF else mpf(1)
         if given == "friction_n" and voltage:
-            # What rounding of mu F_N and of the total costs the electric part.
+            # Condition of the electric part, from the rounding of mu F_N and of the total.
             c = max(c, 12 * mpf(wanted) / (mpf(wanted) - q["mu"] * q["load"]))
         row.update(voltage_v=digits(voltage), status="ok", f32=int(normal_in_f32(voltage) and c < 1e6), condition=mp.nstr(c, 6))
         self.inverse.append(row)

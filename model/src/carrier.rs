@@ -22,7 +22,7 @@ pub struct Carrier {
     pub waveform: Waveform,
     /// Half a period `T`, in seconds.
     pub half_period_s: f32,
-    /// Half a period, in ticks. Above 1.
+    /// Half a period, in ticks: at least 2.
     pub half_period_ticks: u32,
     /// Time constant `tau` of the lag, in seconds; zero if there is no lag.
     ///
@@ -77,7 +77,7 @@ impl Carrier {
             Waveform::Sine if has_lag => {
                 let ticks = DoubleSingle::from(self.half_period_ticks as f32);
                 DoubleSingle::TWO
-                    / held_sine_left(half_period_s / (ticks * (DoubleSingle::TWO * edge_time_constant_s)), ticks)
+                    / held_sine_fraction(half_period_s / (ticks * (DoubleSingle::TWO * edge_time_constant_s)), ticks)
             }
             Waveform::Sine => DoubleSingle::TWO,
         };
@@ -106,8 +106,9 @@ impl Carrier {
     }
 }
 
-/// Fraction of the mean square that a lag leaves of a sine of `half_period_ticks` ticks, each of `2 r` time constants.
-fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
+/// Fraction of its mean square that a sine of `half_period_ticks` ticks, each `2 r` time constants long, keeps after a
+/// lag.
+fn held_sine_fraction<T: Real>(r: T, half_period_ticks: T) -> T {
     let half_angle = T::from_f64(0.5 * PI) / half_period_ticks;
     let tan = half_angle * (T::ONE - tangent_deficit(half_angle, -(half_angle * half_angle)));
     let kept = tangent_deficit(r, r * r);
@@ -116,13 +117,14 @@ fn held_sine_left<T: Real>(r: T, half_period_ticks: T) -> T {
     (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
 }
 
-/// `1 - tanh(r)/r` if `square` is `r^2`, and `1 - tan(r)/r` if it is `-r^2` and `r` at most pi/4. Lambert's continued
-/// fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))` keeps its precision for small `r`, and takes a tenth of the
-/// code of `tanh`.
+/// `1 - tanh(r)/r` if `square` is `r^2`; `1 - tan(r)/r` if it is `-r^2` and `r` is at most pi/4.
+///
+/// Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))` keeps its precision for small `r`, and
+/// takes a tenth of the code of `tanh`.
 fn tangent_deficit<T: Real>(r: T, square: T) -> T {
-    /// From here on, `tanh` is one to the last bit of `f64`.
+    /// Argument from which `tanh` is 1 to the last bit of `f64`.
     const STEEP: f32 = 20.0;
-    /// Number of terms after which the remainder is below the last bit up to there.
+    /// Number of terms after which the remainder is below the last bit, for arguments up to [`STEEP`].
     const TERMS: u16 = 32;
     if r > T::from(STEEP) {
         return T::ONE - T::ONE / r;
@@ -141,7 +143,7 @@ mod tests {
         for i in 0..=4000 {
             let r = libm::pow(10.0, f64::from(i) / 1000.0 - 1.0);
             let expected = 1.0 - libm::tanh(r) / r;
-            // The expression that it is compared with loses digits for small r.
+            // The reference expression loses digits for small r.
             let tolerance = 4.0 * f64::EPSILON * (1.0 + 1.0 / expected);
             assert!((tangent_deficit(r, r * r) / expected - 1.0).abs() < tolerance, "{r}");
         }
@@ -151,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Mean square over the last of twenty periods, stepped through.
+    /// Mean square over the last of twenty periods, integrated step by step.
     fn stepped(wave: impl Fn(f64) -> f64, half_period_s: f64, tau_s: f64) -> f64 {
         let steps = 100_000;
         let step_s = 2.0 * half_period_s / f64::from(steps);
@@ -206,7 +208,8 @@ mod tests {
         }
     }
 
-    /// Current through a capacitance whose voltage follows a wave of ticks with a lag, stepped through: rms and peak.
+    /// Rms and peak of the current into a capacitance whose voltage follows a wave of ticks with a lag, integrated step
+    /// by step.
     fn stepped_current(wave: impl Fn(i32) -> f64, capacitance_f: f64, tau_s: f64) -> (f64, f64) {
         const STEPS_PER_TICK: i32 = 1000;
         let step_s = 25e-6 / f64::from(STEPS_PER_TICK);
@@ -223,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn currents_are_those_of_a_square_wave_integrated_step_by_step_and_more_than_a_sines() {
+    fn currents_match_an_integrated_square_wave_and_exceed_a_sines() {
         let (capacitance_f, v_peak) = (0.5e-9, 200.0);
         let square = |tick: i32| if tick % 40 < 20 { v_peak } else { -v_peak };
         let sine = |tick: i32| v_peak * libm::sin(2.0 * PI * f64::from(tick) / 40.0);

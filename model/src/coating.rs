@@ -6,7 +6,7 @@ use crate::{Expected, Real};
 /// Vacuum permittivity in F/m, CODATA 2022 (doi:10.1103/RevModPhys.97.025002); relative uncertainty 1.6e-10.
 pub const VACUUM_PERMITTIVITY_F_PER_M: f64 = 8.854_187_818_8e-12;
 
-/// One slab of a coating: a dielectric, an air gap (permittivity 1), the outer skin.
+/// One slab of a coating: a dielectric, an air gap (permittivity 1) or the outer skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slab<T> {
     /// Thickness in metres, above zero.

@@ -2,10 +2,10 @@
 
 use core::num::NonZeroU32;
 
-/// The quotient of `whole * 2^32 + fraction` and `divisor`, rounded down, and the remainder. Wrong for a
-/// divisor above 2^24, since a remainder and a byte are 32 bits.
+/// The quotient of `whole * 2^32 + fraction` and `divisor`, rounded down, and the remainder. The divisor must be at
+/// most 2^24: a remainder and the next byte have to fit into 32 bits.
 ///
-/// It divides byte by byte in 32 bits, since the library's division of 64 bits takes 1 KB of a board's flash.
+/// Divides byte by byte in 32 bits, since the library's 64-bit division takes 1 KB of a board's flash.
 ///
 /// ```
 /// use core::num::NonZeroU32;

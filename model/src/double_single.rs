@@ -11,8 +11,8 @@ use crate::Real;
 ///
 /// Relative errors: 1.1e-14 for a sum of like signs, 2.5e-14 for a product, 5.4e-14 for a quotient, 1e-13 for a root,
 /// while the second part, 1e-14 of the number, is a normal `f32`; below about 1e-24 they grow to those of `f32`.
-/// Factors are below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error
-/// bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
+/// Factors must be below 8e34. Algorithms 6, 10 and 17 of M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous
+/// error bounds for basic building blocks of double-word arithmetic", ACM TOMS 44(2), 2017, doi:10.1145/3121432.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DoubleSingle {
     high: f32,
@@ -84,7 +84,7 @@ impl DoubleSingle {
         Self { high, low: (value - high as f64) as f32 }
     }
 
-    /// The product with `2^exponent`, which is normal.
+    /// The product with `2^exponent`, which must be a normal number.
     fn times_power_of_two(self, exponent: i32) -> Self {
         let factor = f32::from_bits(((exponent + EXPONENT_BIAS) as u32) << SIGNIFICAND_BITS);
         Self { high: self.high * factor, low: self.low * factor }
@@ -259,7 +259,8 @@ impl Real for DoubleSingle {
     /// Returns zero for arguments below the smallest normal number.
     #[inline(never)]
     fn sqrt(self) -> Self {
-        /// A first guess at `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square root", Purdue University, 2003).
+        /// Constant of a first guess at `1/sqrt(x)`, within 3.5 % (C. Lomont, "Fast inverse square root", Purdue
+        /// University, 2003).
         const GUESS: u32 = 0x5f37_59df;
         if self.high < f32::MIN_POSITIVE {
             return Self::ZERO;
@@ -359,7 +360,7 @@ mod tests {
             ("square", worst(|a, _| a.pow(DoubleSingle::TWO), |a, _| a * a), 1e-12),
         ] {
             assert!(worst < bound, "{name}: {worst:e}");
-            assert!(worst > 1e-3 * bound, "{name}: {worst:e} shows nothing");
+            assert!(worst > 1e-3 * bound, "{name}: {worst:e} is too small to be a real error");
         }
     }
 
@@ -374,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn powers_and_logarithms_end_where_they_say() {
+    fn powers_and_logarithms_end_at_their_documented_limits() {
         let pow = |base: f32, exponent: f32| DoubleSingle::from(base).pow(DoubleSingle::from(exponent));
         for base in [1.5e-38_f32, 1e-30, 0.3, 1.0, 2.5, 1e30, 1e38] {
             for exponent in [-3.0_f32, -1.0, -0.3, 0.0, 1e-3, 0.7, 1.0, 12.0] {

@@ -22,9 +22,8 @@ pub struct LawPoint {
 /// 1. Power laws through the points: below the first one, `x ~ V^exponent`; between two, the power law through both.
 ///    A single point and an exponent are a power law.
 /// 2. `x_top` is the friction at the largest voltage by step 1, rounded down to an `f32`. The *knots* of the law are
-///    127 numbers, eight per octave: the number whose `f32` bit pattern is that of `x_top` plus 1, and those whose
-///    patterns are 1 to 126 times 2^20 less. At the knots, the law is that of step 1; between two knots, it is the
-///    power law through both.
+///    127 frictions, eight per octave: their `f32` bit patterns are that of `x_top` plus 1, and 1 to 126 times 2^20
+///    less. At the knots, the law is that of step 1; between two knots, it is the power law through both.
 ///
 /// A bend at a point is thus rounded off within an eighth of an octave of friction, and each row of the board's
 /// [`InverseTable`](crate::InverseTable) lies within one power law, so that its error can be proven. Below the lowest
@@ -46,7 +45,7 @@ pub struct EmpiricalLaw {
     grid: RowGrid,
 }
 
-/// Why numbers do not form an empirical law up to a voltage.
+/// Why numbers are not a valid empirical law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LawError {
     /// There is no point, or there are more than [`EmpiricalLaw::POINTS_MAX`].
@@ -217,8 +216,8 @@ impl EmpiricalLaw {
         last
     }
 
-    /// The first point that satisfies `reaches`, or the last one, and the power of the friction with which the voltage
-    /// grows up to it.
+    /// The first point that satisfies `reaches`, or the last one, and the exponent of the power law `V ~ x^p` that ends
+    /// there.
     fn segment<T: Real>(&self, reaches: impl Fn(&LawPoint) -> bool) -> (Point<T>, T) {
         let mut before: Option<&LawPoint> = None;
         for point in self.points.iter().take(usize::from(self.count)) {
@@ -263,7 +262,7 @@ impl LawPoint {
     }
 }
 
-/// The power of the friction with which the voltage grows from one point to another.
+/// Exponent `p` of the power law `V ~ x^p` through two points.
 fn power<T: Real>(start: Point<T>, end: Point<T>) -> T {
     ln_ratio(end.1, start.1) / ln_ratio(end.0, start.0)
 }

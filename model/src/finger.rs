@@ -17,7 +17,7 @@ pub struct Finger<T> {
 }
 
 impl Finger<f64> {
-    /// The finger of this crate's examples; `scenes/fingers/example.toml` says where its numbers are from. Assumed.
+    /// The finger of this crate's examples. Its values are assumed; `scenes/fingers/example.toml` gives the reasons.
     pub const EXAMPLE: Self = Self { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5 };
 }
 

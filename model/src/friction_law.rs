@@ -4,7 +4,7 @@ use crate::{Contact, EmpiricalLaw, LoadedContact, ParameterError};
 
 /// Steady friction as a function of the voltage, under one normal load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant, reason = "there is no allocator, and few of them")]
+#[allow(clippy::large_enum_variant, reason = "no allocator to box it, and few values exist")]
 pub enum FrictionLaw {
     /// By the contact model.
     Contact(LoadedContact<f64>),

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use frixel_model::{Finger, InverseTable};
-//! // 10 um of coating, 0.5 N of load, at most 150 V, all of the friction that this reaches.
+//! // 10 um of coating, 0.5 N of load, at most 150 V, no limit on the friction.
 //! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, 150.0, f32::INFINITY)?;
 //! let voltage_v_rms = table.voltage_v_rms(0.02);
 //! assert!((voltage_v_rms - 128.0).abs() < 0.5);
@@ -23,8 +23,8 @@
 //!
 //! The model is by I.I. Argatov and F.M. Borodich, "A macro model for electroadhesive contact of a soft finger with a
 //! touchscreen"; equation numbers are theirs. Beyond the paper, [`Carrier`] models the losses between the DAC and the
-//! electrode, and [`TouchBound`] the voltage at which touching the electrode through a bridged or a thin coating is
-//! still safe.
+//! electrode, and [`TouchBound`] the largest voltage at which the electrode is safe to touch, even through a bridged or
+//! thin coating.
 //!
 //! # Where each equation is
 //!
@@ -102,11 +102,11 @@
 //! eighth of the stiffness give the same friction at every voltage and load, over a contact of twice the radius. A
 //! measured contact radius also identifies the product `R g`; a measured capacitance, the outer radius and `R`.
 //!
-//! Where the load dominates, the electric friction is `2 F* sqrt(n) (V/V*)^2`, and data identify only `mu` and
-//! `F* sqrt(n)/V*^2`; only the departure from that square law separates the two scales. For the example finger
-//! (8 mm, 1.8e7 Pa/m, 10 um, 0.5 N: `n` is 11,052) it is 1 % at 1 V, 5.6 % at 150 V, 9.9 % at 200 V: the first 1 % is
-//! present at any small voltage and is itself a square law. If the noise exceeds the rest of the departure, the data
-//! identify only the one ratio, and a fit must report that.
+//! Where the load dominates, the electric friction is `2 F* sqrt(n) (V/V*)^2`, and data identify only `mu` and `F*
+//! sqrt(n)/V*^2`; only the departure from that square law separates the two scales. For the example finger (8 mm, 1.8e7
+//! Pa/m, 10 um, 0.5 N: `n` is 11,052) the departure is 1 % at 1 V, 5.6 % at 150 V, 9.9 % at 200 V: the first 1 % is
+//! present at any small voltage and is itself a square law. If the noise exceeds the rest, the data identify only that
+//! ratio, and a fit must report so.
 //!
 //! ```
 //! use frixel_model::{Contact, ContactModel, Finger};

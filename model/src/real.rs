@@ -10,7 +10,7 @@ mod sealed {
     impl Sealed for crate::double_single::DoubleSingle {}
 }
 
-/// A real number: `f32` or `f64`, with mathematics from `libm` by name, so that desktop and chip give the same bits.
+/// A real number: `f32` or `f64`. Functions are those of `libm`, so that desktop and chip compute the same bits.
 pub trait Real:
     sealed::Sealed
     + Copy
@@ -59,7 +59,7 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// An integer for each value, ascending with the values of zero and above.
+    /// An integer for each value. For values of zero and above, it ascends with the value.
     fn to_rank(self) -> u64;
     /// The value of a rank.
     fn from_rank(rank: u64) -> Self;

@@ -36,7 +36,7 @@ impl<T: Real> TissueSpring<T> {
     /// The onset of slip under an attraction in newtons that brings the spring into contact, `F_a >= k h`.
     ///
     /// Solved for the tangent of the angle, `t/mu + c (1 + t/mu)/chi = F_a/(k h) - 1` with `c = 1 - cos(phi)` in the
-    /// form that does not cancel, in a bracket: at most 142 steps, six are usual. Relative error at most 4e-15 in f64
+    /// form that does not cancel, in a bracket: at most 142 steps, usually six. Relative error at most 4e-15 in f64
     /// and 1e-6 in f32, times `F_a/(F_a - k h)`.
     pub fn onset(&self, attraction_n: T) -> Result<ShearOnset<T>, StateError> {
         let k = positive("stiffness_n_per_m", self.stiffness_n_per_m)?;

@@ -69,7 +69,7 @@ pub trait ContactModel<T: Real> {
     fn sensitivity(&self, voltage_v_rms: T) -> Result<Sensitivity<T>, StateError>;
 
     /// Smallest and largest friction from no voltage to `voltage_max_v_rms`, in newtons. If the contact needs a voltage
-    /// to exist, the range starts there.
+    /// to exist, the range starts at that voltage.
     fn reachable_friction_n(&self, voltage_max_v_rms: T) -> Result<(T, T), StateError> {
         Ok((self.state(T::ZERO)?.friction_n, self.state(voltage_max_v_rms)?.friction_n))
     }

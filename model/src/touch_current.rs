@@ -7,21 +7,21 @@
 //! Ohm is the current **weighted** for perception and reaction. The amplifier's own lag, which reduces currents, is
 //! neglected.
 //!
-//! | number | source | read |
+//! | number | source | original read |
 //! |---|---|---|
 //! | network and weighting | IEC 60990:2016, Fig. 4 | no; values as in public copies of IEC 60065, Annex D |
 //! | 0.7 mA peak, weighted, in normal use | IEC 61010-1:2010, 6.3.1 b); the same in IEC 62368-1, Table 4, ES1 | no |
 //! | 5 mA peak, weighted, in a single-fault condition | IEC 61010-1:2010, 6.3.2 b) | no |
 //!
-//! A coating too thin to be an insulation is worse than none: its charge from one half period drives current in the
-//! next. [`TouchBound`] therefore holds for every coating, and does not count a coating as protection.
+//! A coating too thin to insulate is worse than none: its charge from one half period drives current in the next.
+//! [`TouchBound`] therefore holds for every coating, and does not count a coating as protection.
 
-/// Largest weighted touch current in normal use, A peak (IEC 61010-1, 6.3.1, unread).
+/// Largest weighted touch current in normal use, A peak (IEC 61010-1, 6.3.1; original not read).
 pub const TOUCH_CURRENT_MAX_A_PEAK: f64 = 0.7e-3;
-/// Largest weighted touch current in a single-fault condition, A peak (IEC 61010-1, 6.3.2, unread).
+/// Largest weighted touch current in a single-fault condition, A peak (IEC 61010-1, 6.3.2; original not read).
 pub const SINGLE_FAULT_CURRENT_MAX_A_PEAK: f64 = 5e-3;
 
-/// Parts of the network of IEC 60990, Fig. 4 (unread).
+/// Parts of the network of IEC 60990, Fig. 4 (original not read).
 const SKIN_OHM: f64 = 1.5e3;
 const SKIN_F: f64 = 0.22e-6;
 const BODY_OHM: f64 = 500.0;
@@ -76,7 +76,7 @@ fn weighted_a([.., weighting_v]: &State) -> f64 {
 }
 
 impl TouchPath {
-    /// Number of half periods until a wave counts as steady.
+    /// Number of half periods after which a wave is taken as steady.
     const HALF_PERIODS: u32 = 200;
     /// Smallest number of steps in a half period.
     const STEPS: u32 = 200;
@@ -114,7 +114,7 @@ impl TouchPath {
     /// The weighted current is a sum of past voltages weighted by the impulse response. The largest such sum is found
     /// over all paths of the integral, on a grid of a fortieth of a half period.
     pub fn any_envelope_a_peak(&self, drive_v_peak: f64, carrier_hz: f64) -> f64 {
-        /// Positions of the integral: one half period is forty.
+        /// Positions of the integral, forty per half period.
         const PLACES: usize = 81;
         let half_period_s = 0.5 / carrier_hz;
         let cell_s = half_period_s / 40.0;

@@ -23,7 +23,7 @@ fn bound<T: Real>(variant: &str) -> f64 {
     }
 }
 
-/// The largest error of each variant over its bound, and the row it comes from.
+/// For each variant, the largest ratio of error to bound, and its row.
 type Worst = BTreeMap<String, (f64, String)>;
 
 fn record(worst: &mut Worst, row: &Row, what: &str, share: f64) {
@@ -100,8 +100,8 @@ fn inverse<T: Real + 'static>(distort: impl Fn(T) -> T) -> Worst {
     worst
 }
 
-/// Asserts that every variant keeps its bound, that the page has how much of it is used, and that every variant exceeds
-/// it when the output is forced to zero.
+/// Asserts that every variant keeps its bound, that `docs/inside/model.md` lists how much of it is used, and that every
+/// variant exceeds it when the output is forced to zero.
 fn hold(what: &str, found: &Worst, zeroed: &Worst) {
     assert_eq!(found.len(), 7);
     for (variant, (share, place)) in found {
@@ -119,9 +119,9 @@ fn zero_state<T: Real>(_: ContactState<T>) -> ContactState<T> {
     ContactState { contact_radius_m: zero, stiffness_pa_per_m: zero, friction_n: zero, electric_friction_n: zero }
 }
 
-/// The required rows are among the fixtures, none of them only in f64.
+/// The fixtures contain every named row, at least once within the range of f32.
 #[test]
-fn named_rows_are_there() {
+fn the_fixtures_contain_the_named_rows() {
     for name in [
         "squares overflow f32",
         "q = 4e-29",
@@ -147,7 +147,7 @@ fn named_rows_are_there() {
 
 /// The dimensionless groups computed from a row agree with the row's name.
 #[test]
-fn named_rows_are_what_they_are_called() {
+fn named_rows_match_their_names() {
     let groups = |row: &Row| {
         let number = |column| row.number(column).unwrap_or(0.0);
         let gap_m = number("coating_m") / number("permittivity");

@@ -72,7 +72,7 @@ fn above_the_square_law(contact: &LoadedContact<f64>, load_n: f64, voltage_v_rms
 fn departure_from_the_square_law() {
     let docs = docs();
     let (_, figures) = docs.split_once("`n` is ").unwrap();
-    let (n, figures) = figures.split_once(") it is ").unwrap();
+    let (n, figures) = figures.split_once(") the departure is ").unwrap();
     rounds_to(example().load(0.5), n);
     let contact = example().under_load(0.5).unwrap();
     let (figures, _) = figures.split_once(':').unwrap();

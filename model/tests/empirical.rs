@@ -4,7 +4,7 @@
 use frixel_model::{EmpiricalLaw, InverseTable, LawError, LawPoint};
 
 const BOUND: f64 = InverseTable::RELATIVE_ERROR as f64;
-/// The error holds from this part of the largest friction on.
+/// The error bound holds from this part of the largest friction on.
 const LEAST_PART: f64 = 1.0 / (1 << 15) as f64;
 
 fn points(pairs: &[(f32, f32)]) -> Vec<LawPoint> {
@@ -27,7 +27,7 @@ fn worst_error(law: &EmpiricalLaw, friction_max_n: f32, stride: usize, inverse: 
         .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }
 
-/// Points of a law with its exponent below them.
+/// The exponent below the points of a law, and the points.
 type Case = (f32, Vec<(f32, f32)>);
 
 /// Power laws from the least to the greatest exponent, bends, a steep step, a plateau, and tiny and large frictions.
@@ -85,8 +85,8 @@ fn tables_are_within_the_bound_at_every_f32() {
     }
 }
 
-/// The proof of the bound: every row lies within one power law, `V = x^p`, and is widest, relative to where it begins,
-/// from 1 to 9/8. What is computed here is the same for every scale of friction and voltage.
+/// Proof of the bound. Every row lies within one power law, `V = x^p`, and relative to its start it is widest from 1 to
+/// 9/8. The errors are the same at every scale of friction and voltage.
 #[test]
 fn the_bound_is_proven_for_every_power_law() {
     let [least, most] = EmpiricalLaw::EXPONENTS.map(f64::from);
@@ -129,7 +129,7 @@ fn the_bound_is_proven_for_every_power_law() {
 }
 
 #[test]
-fn a_law_passes_its_points_within_what_a_bend_is_rounded() {
+fn a_law_passes_near_its_points_since_bends_are_rounded() {
     let pairs = [(30.0_f32, 1e-3_f32), (80.0, 9e-3), (150.0, 0.1)];
     let law = law(2.0, &pairs, 150.0).unwrap();
     for (voltage_v_rms, friction_n) in pairs.map(|(v, x)| (f64::from(v), f64::from(x))) {
@@ -144,13 +144,13 @@ fn a_law_passes_its_points_within_what_a_bend_is_rounded() {
         assert!((law.voltage_v_rms(friction_n) / voltage_v_rms - 1.0).abs() < 1e-12, "{voltage_v_rms}");
         before_n = friction_n;
     }
-    // No more voltage is asked for than was measured.
+    // The voltage never exceeds the largest measured one.
     assert_eq!(law.voltage_v_rms(10.0).to_bits(), law.voltage_v_rms(f64::from(0.1_f32)).to_bits());
     assert_eq!((law.electric_friction_n(0.0), law.voltage_v_rms(-1.0), law.voltage_v_rms(f64::NAN)), (0.0, 0.0, 0.0));
 }
 
 #[test]
-fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
+fn a_truncated_table_equals_the_whole_one_up_to_its_end() {
     let (exponent, pairs) = cases().pop().unwrap();
     let points = points(&pairs);
     let whole = InverseTable::of_law(exponent, &points, 150.0, f32::INFINITY).unwrap();
@@ -167,11 +167,11 @@ fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
 }
 
 #[test]
-fn what_is_no_law_is_refused_with_the_reason() {
+fn an_invalid_law_is_refused_with_the_reason() {
     let refused = |exponent, pairs: &[(f32, f32)], voltage_max_v_rms| {
         let error = law(exponent, pairs, voltage_max_v_rms).unwrap_err();
         let by_board = InverseTable::of_law(exponent, &points(pairs), voltage_max_v_rms, f32::INFINITY).unwrap_err();
-        // As texts, since not-a-number differs from itself.
+        // Compared as text, since NaN differs from itself.
         assert_eq!(format!("{by_board:?}"), format!("{error:?}"));
         error
     };
@@ -199,7 +199,7 @@ fn what_is_no_law_is_refused_with_the_reason() {
         (2.0, 1e-36, 100.0),
         (2.0, 0.9e-6, 100.0),
         (12.0, 1e-3, 50.0),
-        // The coefficients of their rows would underflow, and a row drive above the largest voltage.
+        // The coefficients of their rows would underflow, and a row would exceed the largest voltage.
         (0.67, 1e16, 100.0),
         (2.0, 1e24, 100.0),
         (2.0, 1.1e12, 100.0),

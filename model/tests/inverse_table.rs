@@ -131,7 +131,7 @@ fn a_table_that_cannot_be_built_gives_the_reason() {
 
 /// Up to the largest target, a truncated table returns the same bits as the whole one; above, the voltage at its end.
 #[test]
-fn a_cut_table_is_the_whole_one_up_to_what_is_asked_for() {
+fn a_truncated_table_equals_the_whole_one_up_to_its_end() {
     for (normal_load_n, voltage_max_v_rms) in [(0.0, 0.3), (0.0, 150.0), (0.5, 150.0), (0.5, 200.0)] {
         let contact = contact(normal_load_n);
         let whole = InverseTable::build(&contact, voltage_max_v_rms).unwrap();

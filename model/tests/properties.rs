@@ -164,7 +164,7 @@ proptest! {
         prop_assert!((force_n * finger.0.friction_coefficient / state.friction_n - 1.0).abs() < 1e-9);
     }
 
-    /// At pull-off both areas of Eq. (43) meet: contact above, none below, and the load it withstands is this one.
+    /// At pull-off both areas of Eq. (43) meet. Above its voltage there is contact, below there is none.
     #[test]
     fn pull_off_is_where_contact_ends(finger in fingers(), voltage in log_range(1e-2, 1e3)) {
         let contact = Contact::new(&finger.0, finger.1).unwrap();
@@ -224,7 +224,7 @@ fn slope(model: &dyn ContactModel<f64>, voltage_v_rms: f64) -> f64 {
     (high.friction_n / low.friction_n).ln() / (1.001_f64 / 0.999).ln() / 2.0
 }
 
-/// Eqs. (34), (36) begin with slope 1 in sigma0, not with slope 2 as Section VI.A of the paper has it.
+/// Eqs. (34), (36) begin with slope 1 in sigma0; Section VI.A of the paper says 2.
 #[test]
 fn limits_of_small_and_large_voltage() {
     let finger = Finger::<f64>::EXAMPLE;
@@ -269,7 +269,7 @@ fn limits_of_small_and_large_voltage() {
 /// At the ends of f32, each result of the lower bound is computed independently: the stiffness stays representable
 /// where friction is not, and friction where its scaled value is not.
 #[test]
-fn the_soft_lower_bound_keeps_what_f32_can_hold() {
+fn the_soft_lower_bound_returns_every_result_that_f32_can_represent() {
     let (soft, hard) = (131_072.0, 2_147_483_648.0);
     for (modulus_pa, stress_exponent, voltage) in
         [(soft, 1.0, 1e-5), (soft, 0.75, 1e-7), (soft, 0.02, 1e-16), (hard, 1.0, 0.05), (hard, 1.0, 0.0123)]
@@ -324,8 +324,7 @@ fn force_laws_agree() {
     }
 }
 
-/// What friction can identify: mu, F* and V*. A second finger with all of R, k and g different, and every friction the
-/// same.
+/// Friction identifies only mu, F* and V*: a second finger with another R, k and g has the same friction everywhere.
 #[test]
 fn friction_does_not_identify_radius_stiffness_and_gap() {
     let one = Contact::new(&Finger::<f64>::EXAMPLE, 1e-5);

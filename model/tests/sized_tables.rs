@@ -67,7 +67,7 @@ fn worst_fixed<const C: usize>(
     let first = table.friction(low).to_num::<f64>();
     assert_eq!(table.voltage(U0F32::ZERO), U1F31::ZERO);
     assert!(table.voltage(U0F32::MAX) <= U1F31::ONE);
-    // Frictions spread evenly over octaves, as far as there are steps.
+    // Frictions spread evenly over octaves.
     let steps = ((1.0 / first).ln() / 3.7e-4) as i32;
     (0..steps)
         .map(|step| U0F32::from_num(first * (3.7e-4 * f64::from(step)).exp()))
@@ -80,7 +80,7 @@ fn worst_fixed<const C: usize>(
 }
 
 #[test]
-fn bounds_hold_and_are_not_idle() {
+fn bounds_hold_and_are_tight() {
     for contact in contacts() {
         let (low, high) = range(&contact);
         for target in [1e-2, 1e-3, 1e-4, 1e-5, 4e-6] {
@@ -167,7 +167,7 @@ fn every_code_is_answered() {
     }
 }
 
-/// One table of the universal curve, for fingers and coatings with nothing in common but `n`.
+/// One table of the universal curve is valid for fingers and coatings that share only `n`.
 #[test]
 fn a_universal_table_serves_every_contact_of_its_load() {
     let n = 100.0;

@@ -13,8 +13,8 @@ use crate::{ContactModel, ContactState, Real, Sensitivity};
 /// (variant `wf-finite`).
 ///
 /// With `beta = b^2/(2 R g)`, `w = 1/(1 + q)` and `h = 1/(1 + q + beta - y)`, Eq. (19) is `y^2 - 2 q y - 2 q (w - h) -
-/// n = 0`. It has exactly one root up to `beta` when the contact does not pass `b`, and none otherwise. Both directions
-/// find it in a bracket between the two bounds: at most 142 steps, four or five are usual.
+/// n = 0`. It has exactly one root up to `beta` when the contact does not pass `b`, and none otherwise. Forward
+/// and inverse search for it in the bracket between the two bounds: at most 142 steps, usually four or five.
 ///
 /// Error bounds, for `q` from 1e-12 to 1e12: 4e-14 in f64 and 1e-6 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,8 @@ pub struct FiniteContact<T> {
     beta: T,
 }
 
-/// Tolerance for rounding, relative to `beta`, of a contact that reaches the outer radius.
+/// Rounding tolerance for a contact that reaches the outer radius, in multiples of [`Real::EPSILON`], relative to
+/// `beta`.
 const SLACK: f32 = 8.0;
 
 impl<T: Real> FiniteContact<T> {
@@ -62,7 +63,7 @@ impl<T: Real> FiniteContact<T> {
             return Ok((v, low));
         }
         let around = T::ONE / (T::ONE + q);
-        // The balance over y rises; Newton's step is that of the balance itself, which is convex.
+        // The balance divided by y rises. Newton's step is that of the undivided balance, which is convex.
         let root = rising_root(low, high, high, |y| {
             let rest = beta - y;
             let beyond = T::ONE / (T::ONE + q + rest);
@@ -107,7 +108,7 @@ impl<T: Real> ContactModel<T> for FiniteContact<T> {
         }
         let rest = (self.beta - y).max(T::ZERO);
         let r = electric_friction_n / (scale * y);
-        // The required voltage falls with the attraction around the contact: it is largest without any.
+        // More attraction around the contact needs less voltage: attraction to any distance, and none, are the bounds.
         let least_v = upper_inverse(y, r);
         let (low, high) = (least_v * least_v, r / T::TWO);
         let root = rising_root(low.min(high), high, low, |q| {

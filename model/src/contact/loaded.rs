@@ -13,8 +13,8 @@ use crate::{ContactModel, ContactState, Finger, Real, Sensitivity};
 
 /// A contact under a fixed normal load of zero or more, with the attraction around it up to any distance.
 ///
-/// Without load this is the paper's upper bound (variant `wf-upper`), Eqs. (34), (36); with it `wf-loaded`, Eqs. (43),
-/// (21). Forward and inverse are in closed form.
+/// Without load this is the paper's upper bound (variant `wf-upper`), Eqs. (34), (36); with a load it is `wf-loaded`,
+/// Eqs. (43), (21). Forward and inverse are in closed form.
 ///
 /// Error bounds, for `q` from 1e-12 to 1e12 and `n` zero or 1e-6 to 1e8, and beyond while the result is a normal
 /// number: 4e-15 in f64 and 1e-6 in f32, relative to the electric friction, the friction and the voltage.

@@ -89,7 +89,7 @@ impl<T: Real> Contact<T> {
         LoadedContact::new(self, normal_load_n)
     }
 
-    /// The contact while a force above zero pulls the finger off: Eq. (43) with the negative normal load `-pull_n`.
+    /// The contact under a force above zero that pulls the finger off: Eq. (43) with the normal load `-pull_n`.
     pub fn under_pull(self, pull_n: T) -> Result<PulledContact<T>, ParameterError> {
         PulledContact::new(self, pull_n)
     }
@@ -104,19 +104,19 @@ impl<T: Real> Contact<T> {
         FiniteContact::new(self, outer_radius_m, normal_load_n)
     }
 
-    /// Voltage scale `V* = sqrt(2 k g^3/eps0)`, in volts rms: that of Eq. (36). Relative error at most 1 rounding in
-    /// f32 and 4 in f64.
+    /// Voltage scale of Eq. (36), `V* = sqrt(2 k g^3/eps0)`, in volts rms. Relative error at most 1 rounding in f32 and
+    /// 4 in f64.
     pub fn voltage_scale_v_rms(&self) -> T {
         self.voltage_scale_v_rms
     }
 
-    /// Friction scale `F* = mu pi k R g^2`, in newtons: that of Eq. (34). Relative error at most 1 rounding in f32 and
-    /// 6 in f64.
+    /// Friction scale of Eq. (34), `F* = mu pi k R g^2`, in newtons. Relative error at most 1 rounding in f32 and 6 in
+    /// f64.
     pub fn friction_scale_n(&self) -> T {
         self.friction_scale_n
     }
 
-    /// Load scale `pi k R g^2`, in newtons: that of Eq. (43). Relative error at most 1 rounding in f32 and 5 in f64.
+    /// Load scale of Eq. (43), `pi k R g^2`, in newtons. Relative error at most 1 rounding in f32 and 5 in f64.
     pub fn load_scale_n(&self) -> T {
         self.load_scale_n
     }
@@ -161,7 +161,7 @@ impl<T: Real> Contact<T> {
     }
 
     /// Capacitance in farads between electrode and finger, out to `outer_radius_m`: `eps0 pi a^2/g + 2 pi eps0 R ln(1 +
-    /// (beta - y)/(1 + q))`, the gap around the contact being that of Eqs. (11), (17).
+    /// (beta - y)/(1 + q))`, with the gap around the contact from Eqs. (11), (17).
     ///
     /// `contact_radius_m` must be the model's contact radius at this voltage, at most the outer radius. Relative error
     /// at most 4e-15 in f64, 1e-6 in f32.

@@ -11,9 +11,9 @@ use crate::{ContactModel, ContactState, Real, Sensitivity};
 /// It exists while `q^2 + 2 q/(1 + q) + n >= 0` and is stable while `y > q`; at pull-off both become equalities. The
 /// inverse refuses the unstable branch below pull-off.
 ///
-/// Error bounds: those of [`LoadedContact`](crate::LoadedContact) times `max(1, c/12)`, with the condition number `c`
-/// the sum of the relative changes of the answer over those of voltage (or friction), load, stiffness, gap and radius.
-/// Near pull-off it grows without limit, as `q/(y - q)`.
+/// Error bounds: those of [`LoadedContact`](crate::LoadedContact) times `max(1, c/12)`. The condition number `c` is the
+/// sum of the relative sensitivities of the result to voltage (or friction), load, stiffness, gap and radius. Near
+/// pull-off it grows without limit, as `q/(y - q)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulledContact<T> {
     contact: Contact<T>,
@@ -37,7 +37,7 @@ impl<T: Real> PulledContact<T> {
     }
 
     /// The rms voltage below which the finger comes off, in volts: the positive root of `q^3 + q^2 + (2 + n) q + n =
-    /// 0`. At most 142 steps; six are usual. Relative error at most 4e-15 in f64, 1e-6 in f32.
+    /// 0`. At most 142 steps, usually six. Relative error at most 4e-15 in f64, 1e-6 in f32.
     pub fn pull_off_voltage_v_rms(&self) -> Result<T, StateError> {
         finite_answer(self.contact.voltage_scale_v_rms * self.pull_off_attraction()?.sqrt())
     }

@@ -81,8 +81,8 @@ impl<T: Real> SoftContact<T> {
 /// With `p = F_T/(mu B E R^2)`, `tau = pi sigma0/(B E)`, `zeta = g/R` and the load `l` in the scale of `p`, the
 /// self-consistent balance is `p = l + 2 tau (p^(2 gamma) + zeta/(1 + q))`, `q = tau/zeta p^(4 gamma - 1)`. Divided by
 /// `p`, each term of the right side falls, so the root is unique for every stress exponent. It is found in a bracket,
-/// in at most 142 steps, usually five or six. The inverse takes the stiffness from the friction, Eq. (29), and then
-/// that of [`LoadedContact`](crate::LoadedContact), in closed form.
+/// in at most 142 steps, usually five or six. The inverse computes the stiffness from the friction, Eq. (29), and then
+/// uses the closed-form inverse of [`LoadedContact`](crate::LoadedContact).
 ///
 /// Error bounds, for stress exponents from 0.02 to 1 (and tested for 1e-6): 4e-14 in f64 and 1e-5 in f32.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +143,7 @@ impl<T: Real> SoftLoadedContact<T> {
     fn solve(&self, tau: T) -> Result<T, StateError> {
         let two = T::TWO;
         let bound = |tau: T| (two * tau).pow(T::ONE + self.contact.forces.two_s);
-        // With the constant part c, p <= c + 2 tau p^(2 gamma) holds up to twice the larger of the two bounds alone.
+        // With the constant part c, p <= c + 2 tau p^(2 gamma): p is at most twice the larger summand.
         let constant = self.load + two * tau * self.zeta;
         let high = (two * constant).max(bound(two * tau));
         let low = self.load.max(bound(tau));
@@ -218,7 +218,7 @@ impl<T: Real> ContactModel<T> for SoftLoadedContact<T> {
         let p = self.solve(tau)?;
         let balance = self.balance(tau, p);
         let steepness = self.steepness(&balance, p);
-        // d ln p/d ln tau: the second term's share of the stress falls as the stress softens it.
+        // d ln p/d ln tau: the attraction around the contact grows more slowly than the stress.
         let by_stress = (balance.inside + balance.around * (T::ONE - balance.softening)) / p / steepness;
         let friction_n = mu * self.contact.forces.force_scale_n * p;
         Sensitivity {

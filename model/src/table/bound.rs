@@ -3,7 +3,7 @@
 /// Supremum of `s |x^C V^(C)|/(C! V)` for `C` = 2, 3, 4 coefficients, rounded up: from `reference/table_constants.py`.
 const CURVATURE: [f64; 3] = [0.425, 0.264, 0.189];
 
-/// Greatest product of distances to the interpolation points in a row from -1 to 1, for 2, 3, 4 points.
+/// Largest product of the distances to the interpolation points in a row from -1 to 1, for 2, 3 and 4 points.
 const DISTANCES: [f64; 3] = [1.0, 0.384_900_179_459_750_5, 0.171_572_875_253_809_9];
 
 /// Contribution of f32 rounding: coefficients and Horner's steps weigh the four terms with 2, 4, 6, 7 half-units. In

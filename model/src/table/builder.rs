@@ -101,7 +101,7 @@ impl<'contact> TableBuilder<'contact> {
         Ok(TableShape { precision, coefficients, rows, relative_error })
     }
 
-    /// The shape of the smallest table with any number of coefficients.
+    /// The shape of the smallest table with 2, 3 or 4 coefficients per row.
     pub fn smallest(&self, precision: Precision) -> Result<TableShape, TableError> {
         let mut smallest = self.shape(precision, 4)?;
         for coefficients in [3, 2] {
@@ -153,8 +153,8 @@ impl<'contact> TableBuilder<'contact> {
     pub(super) fn fixed_layout(&self, coefficients: usize) -> Result<FixedLayout, TableError> {
         let voltage_ratio =
             self.contact.voltage_v_rms(self.friction_max_n) / self.contact.voltage_v_rms(self.friction_min_n);
-        // Half a code per coefficient, one per truncated step, and one for the position in the row; to the fourth
-        // power.
+        // Error in codes: half per coefficient, one per truncated step, and one for the position in the row. Friction
+        // grows at most as the fourth power of the voltage.
         let codes = 1.5 * coefficients as f64;
         let rest = 4.0 * codes / f64::from(1_u32 << 31) * voltage_ratio + TOP_SHARE;
         let half = half_width(coefficients, self.budget(rest)?).ok_or(TableError::Range)?.min(0.5);

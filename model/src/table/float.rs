@@ -140,7 +140,7 @@ fn horner<const C: usize>(row: &[f32; C], x: f32) -> f32 {
     lower.iter().rev().fold(*highest, |sum, coefficient| sum * x + coefficient)
 }
 
-/// The largest power of two up to a positive number; the smallest normal number for anything less.
+/// The largest power of two up to a positive number; the smallest normal number for a smaller or negative one.
 fn power_of_two(value: f32) -> f32 {
     f32::from_bits(value.max(f32::MIN_POSITIVE).to_bits() & f32::INFINITY.to_bits())
 }

@@ -47,10 +47,12 @@ pub struct InverseTable {
 }
 
 impl InverseTable {
-    /// Largest relative error, in electric friction, from the friction at 1 V (or at 1/200 of the largest voltage, when
-    /// that is lower) to that at the largest: proven for every finger, coating and load of zero or more (9.9e-6, from
-    /// `reference/table_constants.py`). For the example finger between 1 V and 200 V it is 3.6e-6 without load and
-    /// 1.8e-6 under 0.5 N, over every `f32`: `cargo test --release -p frixel-model -- --ignored --nocapture`.
+    /// Bound on the relative error in electric friction, proven for every finger, coating and load of zero or more
+    /// (9.9e-6, from `reference/table_constants.py`).
+    ///
+    /// It holds from the friction at 1 V, or at 1/200 of the largest voltage if that is lower, to the friction at the
+    /// largest voltage. For the example finger between 1 V and 200 V, the largest error over every `f32` is 3.6e-6
+    /// without load and 1.8e-6 under 0.5 N: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
     /// A table of zero volts for every friction. All its bits are zero, so that a static of it takes no flash.
@@ -205,7 +207,7 @@ impl InverseTable {
         self.grid.is_empty()
     }
 
-    /// Number of rows that hold a piece of the curve. The others cost no evaluation of the closed form.
+    /// Number of rows that hold a piece of the curve; only these are computed from the closed form.
     pub fn rows_filled(&self) -> usize {
         // The line towards zero and the constant in truncated rows have no curvature; the curve has it everywhere.
         self.rows.iter().filter(|[_, _, curvature, _]| curvature.abs() > 0.0).count()
@@ -272,7 +274,7 @@ impl EmpiricalTableFilling {
 struct Filling<C> {
     curve: C,
     rows: Range<usize>,
-    /// Where the first of them begins.
+    /// The point of the curve at the start of the first of `rows`.
     start: Point<DoubleSingle>,
 }
 

@@ -1,4 +1,4 @@
-//! Tables from electric friction to rms voltage. They are evaluated without root, division or logarithm.
+//! Tables from electric friction to rms voltage, evaluated without root, division or logarithm.
 //!
 //! The bits of an `f32`, read as an integer, are a piecewise linear logarithm of its value. Each row covers the same
 //! number of successive bit patterns and holds a polynomial in the friction itself. Rows therefore need not be aligned

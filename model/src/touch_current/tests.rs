@@ -16,7 +16,7 @@ fn margin(series_ohm: f64, carrier_hz: f64) -> f64 {
 }
 
 #[test]
-fn at_the_bound_no_coating_and_no_envelope_lets_more_than_allowed_through() {
+fn at_the_bound_the_worst_coating_and_envelope_stay_below_the_limit() {
     for series_ohm in [34e3, 68e3, 136e3, 390e3, 1e6] {
         for carrier_hz in CARRIERS_HZ {
             let margin = margin(series_ohm, carrier_hz);
@@ -27,7 +27,7 @@ fn at_the_bound_no_coating_and_no_envelope_lets_more_than_allowed_through() {
 
 /// A bound that is needlessly low costs friction.
 #[test]
-fn the_bound_is_within_an_eighth_of_what_is_allowed() {
+fn the_bound_is_within_an_eighth_of_the_allowed_voltage() {
     for carrier_hz in CARRIERS_HZ {
         let margin = margin(68e3, carrier_hz);
         assert!(margin < 1.125 * f64::from(TouchBound::MARGIN) || carrier_hz > 3e3, "{margin} at {carrier_hz} Hz");
@@ -115,14 +115,13 @@ fn no_random_envelope_exceeds_the_worst_one_and_some_come_near() {
 }
 
 #[test]
-fn a_board_that_nobody_can_touch_has_no_bound() {
+fn an_untouchable_electrode_has_no_bound() {
     assert!(TouchBound::behind(f32::INFINITY).voltage_max_v_peak(125.0).is_infinite());
 }
 
-/// A scene replaces one with a slower carrier: the integral of the slow one is at its limit, and the firmware drives
-/// towards zero with a sixteenth of the voltage until the integral is within the new limit
-/// (`firmware/control/src/carrier.rs`). With all of it, 0.90 mA would flow once; with an eighth, the margin for
-/// amplifier and resistor would be gone.
+/// A scene replaces one with a slower carrier, whose integral is at its limit. The firmware drives towards zero with a
+/// sixteenth of the voltage until the integral is within the new limit (`firmware/control/src/carrier.rs`). At the full
+/// voltage, 0.90 mA would flow once; at an eighth, no margin would be left for amplifier and resistor.
 #[test]
 fn a_fast_scene_in_place_of_a_slow_one_stays_within_the_limit() {
     let bound = TouchBound::behind(68e3);

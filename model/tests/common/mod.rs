@@ -86,7 +86,7 @@ pub(crate) fn rows(text: &str) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-/// Relative error of a result; infinite if it is not-a-number, or if it is not zero where zero is correct.
+/// Relative error of a result; infinite for NaN, and for any result but zero where zero is correct.
 pub(crate) fn relative_error(found: f64, right: f64) -> f64 {
     let error = if right == 0.0 { if found == 0.0 { 0.0 } else { f64::INFINITY } } else { (found / right - 1.0).abs() };
     if error.is_nan() { f64::INFINITY } else { error }
