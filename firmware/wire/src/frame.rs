@@ -87,7 +87,7 @@ pub struct PayloadLength {
 
 impl fmt::Display for PayloadLength {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a payload has {} bytes, and a frame takes 1 to {PAYLOAD_MAX_LEN}: split a longer one", self.len)
+        write!(f, "the payload has {} bytes, but a frame holds 1 to {PAYLOAD_MAX_LEN}: split a longer one", self.len)
     }
 }
 

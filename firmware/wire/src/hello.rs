@@ -55,11 +55,11 @@ pub struct Hello {
     pub state: State,
     /// Limits of the board, encoded as tag-length-value.
     pub limits: BoardLimits,
-    /// Notices to show before a play ([`notice`]), encoded after the limits.
+    /// Notices to show before playing ([`notice`]), encoded after the limits.
     pub notices: u8,
 }
 
-/// Bits of [`Hello::notices`]: warnings about a board to show before a play.
+/// Bits of [`Hello::notices`]: warnings about a board to show before playing.
 pub mod notice {
     /// The processor's option bytes, such as the brown-out level and the watchdog start, are wrong for this board. The
     /// board refuses to arm ([`Refusal::OptionBytes`](crate::message::Refusal::OptionBytes)).
@@ -74,20 +74,20 @@ pub mod notice {
     pub const SENTENCES: [(u8, &str); 3] = [
         (
             OPTION_BYTES,
-            "the processor's option bytes are not those that the board needs, so it refuses to arm: switch the amplifier \
-             off, set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and \
+            "the processor's option bytes are wrong for this board, so it refuses to arm: switch the amplifier off, \
+             set them with `STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4 IWDG_SW=0`, reset the board, and \
              compare all of them if it refuses again (docs/board/hardware.md, Option bytes)",
         ),
         (
             STORED_LIMITS_REFUSED,
             "the board does not use its stored limits, but those built into its firmware: one exceeds a \
              ceiling, or they are damaged or were stored for another series resistance or by another build; flash a \
-             build for the resistance that is soldered, or store them again with bring-up",
+             build for the soldered resistance, or store them again with bring-up",
         ),
         (
             LIMITS_ABOVE_CEILINGS,
-            "the board's firmware takes voltages and currents above the ceilings for a person who touches it: flash a \
-             build without the feature limits-above-ceilings before anyone does",
+            "the board's firmware accepts voltages and currents above the ceilings for people: flash a build without \
+             the feature limits-above-ceilings before anyone touches it",
         ),
     ];
 }
@@ -116,7 +116,7 @@ pub mod feature {
     /// Empirical laws of fingers.
     pub const EMPIRICAL: u32 = 1 << 13;
 
-    /// The name of each feature that is not a kind of layer: the board's Cargo feature, where there is one.
+    /// The name of each feature that is not a kind of layer: the board's Cargo feature, if it has one.
     pub const NAMES: [(u32, &str); 5] = [
         (SINE_CARRIER, "sine-carrier"),
         (TELEMETRY, "telemetry"),
@@ -265,7 +265,7 @@ impl Core {
 }
 
 impl From<u8> for Core {
-    /// An unknown number is read as the Cortex-M4F. The board itself refuses what exceeds its core.
+    /// Reads an unknown number as Cortex-M4F. The board itself refuses scenes that its core cannot play in time.
     fn from(number: u8) -> Self {
         match number {
             1 => Self::CortexM0Plus,

@@ -134,7 +134,7 @@ pub const GAIN_MAX: f64 = 100.0;
 /// Highest rate of telemetry, messages per second.
 pub const TELEMETRY_MAX_HZ: u32 = 1000;
 
-/// Telemetry period in ticks of a board with this tick rate, for at most `messages_hz` messages per second; above 0.
+/// Telemetry period in ticks of a board with this tick rate, for at most `messages_hz` messages per second (above 0).
 pub const fn telemetry_period_ticks(tick_hz: u32, messages_hz: u32) -> u32 {
     tick_hz.div_ceil(messages_hz)
 }

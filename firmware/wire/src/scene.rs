@@ -17,7 +17,7 @@ pub const POLYGON_POINTS_MAX: usize = 32;
 pub const CURVE_POINTS_MAX: usize = 16;
 
 /// CRC-32 that identifies a bitmap, computed over its width and height, each two bytes little-endian, and its samples.
-/// It includes the dimensions because the same samples with other dimensions are another bitmap.
+/// The dimensions distinguish bitmaps with the same samples.
 pub fn bitmap_crc32(width: u16, height: u16, samples: &[u8]) -> u32 {
     bitmap_digest(width, height).update(samples).finish()
 }

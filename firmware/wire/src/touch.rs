@@ -5,11 +5,11 @@
 pub enum Touch {
     /// A finger is on the screen.
     Down {
-        /// From the left edge of the screen, in m.
+        /// Distance from the left edge of the screen, m.
         x_m: f32,
-        /// From the top edge of the screen, in m.
+        /// Distance from the top edge of the screen, m.
         y_m: f32,
-        /// Ticks since the position was measured, as far as the source knows.
+        /// Ticks since the position was measured, as stated by the source.
         age_ticks: u32,
     },
     /// No finger is on the screen.

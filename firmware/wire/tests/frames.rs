@@ -105,13 +105,13 @@ fn payload() -> impl Strategy<Value = Vec<u8>> {
 }
 
 #[test]
-fn an_empty_and_too_long_a_payload_are_refused() {
+fn empty_and_overlong_payloads_are_refused() {
     for len in [0, PAYLOAD_MAX_LEN + 1] {
         assert_eq!(encode(&vec![0x55; len], &mut [0; FRAME_MAX_LEN]), Err(PayloadLength { len }));
     }
 }
 
-/// Frames that are too long but otherwise valid, one of them with a valid beginning of the largest length; and a valid
+/// Overlong but otherwise valid frames, one of which begins with a valid payload of the largest length; and a valid
 /// frame inside an overlong one, which must not be found.
 #[test]
 fn overlong_frames_are_dropped_whole() {
@@ -135,9 +135,9 @@ fn overlong_frames_are_dropped_whole() {
     assert_eq!((decoder.frames(), decoder.rejected()), (1, 1));
 }
 
-/// The frame of an empty payload has the right CRC, and may come from a payload of zeros by a single wrong bit.
+/// An empty payload has a CRC of zero, so a single flipped bit in a run of zeros could produce its frame.
 #[test]
-fn a_wrong_bit_in_zeros_makes_no_frame_of_an_empty_payload() {
+fn a_flipped_bit_in_zeros_makes_no_frame_of_an_empty_payload() {
     let mut line = frame(&[0; 100]);
     assert_eq!(line[..6], [1; 6]);
     line[5] ^= 1;
@@ -148,7 +148,7 @@ fn a_wrong_bit_in_zeros_makes_no_frame_of_an_empty_payload() {
 proptest! {
 
     #[test]
-    fn frames_are_what_the_references_say(payload in payload()) {
+    fn frames_match_the_reference_implementations(payload in payload()) {
         let frame = frame(&payload);
         let body = [payload.as_slice(), &reference_crc32(&payload).to_le_bytes()].concat();
         prop_assert_eq!(reference_uncobs(&frame[..frame.len() - 1]), Some(body));
@@ -182,7 +182,7 @@ proptest! {
 
     /// Arbitrary bytes.
     #[test]
-    fn garbage_is_read_as_the_reference_reads_it(garbage in prop::collection::vec(0..20u8, 0..2_000)) {
+    fn garbage_is_read_as_by_the_reference(garbage in prop::collection::vec(0..20u8, 0..2_000)) {
         let (expected, rejected) = reference_decode(&garbage);
         let (found, decoder) = decode(&garbage);
         prop_assert_eq!(found, expected);
@@ -191,7 +191,7 @@ proptest! {
 
     /// Decoding byte by byte and all at once gives the same result.
     #[test]
-    fn pushing_bytes_is_reading_a_slice(garbage in prop::collection::vec(any::<u8>(), 0..300), payload in payload()) {
+    fn pushing_bytes_equals_reading_a_slice(garbage in prop::collection::vec(any::<u8>(), 0..300), payload in payload()) {
         let line = [garbage.as_slice(), &[0], &frame(&payload)].concat();
         let mut decoder = Decoder::new();
         let mut found = Vec::new();
@@ -202,7 +202,7 @@ proptest! {
     }
 
     #[test]
-    fn crc_in_pieces_is_the_crc(
+    fn crc_in_pieces_equals_the_crc_of_the_whole(
         bytes in prop::collection::vec(any::<u8>(), 0..500),
         cut in any::<prop::sample::Index>(),
     ) {

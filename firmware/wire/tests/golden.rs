@@ -130,7 +130,7 @@ fn every_number_has_golden_bytes() {
 
 /// The functions that write a frame directly give the same frames as [`Payload::write_frame`].
 #[test]
-fn one_call_frames_are_the_same() {
+fn direct_frame_writers_agree_with_payloads() {
     use frixel_wire::payload::{
         chunk_frame, from_board_frame, hello_frame, hello_request_frame, request_frame, samples_frame,
     };

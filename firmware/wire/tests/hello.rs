@@ -62,7 +62,7 @@ fn the_layout_is_frozen() {
 
 /// Another protocol, unknown numbers and limits, a known limit of another length, bytes after the end.
 #[test]
-fn a_hello_of_the_future_is_read() {
+fn a_hello_of_a_later_protocol_is_read() {
     let now = hello();
     let mut bytes = now.write().to_vec();
     bytes[4] = 9;
@@ -90,7 +90,7 @@ fn a_hello_of_the_future_is_read() {
 
 /// With the defaults for limits that a board omits, no scene can be played. `protocol` holds them.
 #[test]
-fn limits_that_are_left_out_allow_nothing() {
+fn omitted_limits_allow_nothing() {
     let mut bytes = hello().write()[..LIMITS_AT].to_vec();
     bytes[LIMITS_LEN_AT] = 0;
     let hello = Hello::parse(&bytes).unwrap();
@@ -149,7 +149,7 @@ fn other_magic_is_refused() {
 
 /// Only the major version decides on compatibility, and the sentence names the side to update.
 #[test]
-fn mismatch_says_which_side_to_change() {
+fn a_mismatch_names_the_side_to_update() {
     assert_eq!(hello().compatibility(), Ok(()));
     assert_eq!(Hello { protocol: (PROTOCOL_MAJOR, 255), ..hello() }.compatibility(), Ok(()));
 

@@ -50,7 +50,7 @@ proptest! {
     }
 
     #[test]
-    fn nearly_right_payloads_do_not_panic(bytes in nearly()) {
+    fn nearly_valid_payloads_do_not_panic(bytes in nearly()) {
         assert_stable(&bytes)?;
     }
 
@@ -86,7 +86,7 @@ fn chunks_and_samples_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn payloads_that_are_not_right_are_refused() {
+fn malformed_payloads_are_refused() {
     assert_eq!(Payload::parse(&[]), Err(ParseError::Empty));
     assert_eq!(Payload::parse(&[0x05]), Err(ParseError::UnknownKind { kind: 0x05 }));
     assert_eq!(Payload::parse(&[0x7f, 1]), Err(ParseError::UnknownKind { kind: 0x7f }));

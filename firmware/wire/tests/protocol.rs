@@ -85,7 +85,7 @@ fn examples_of_the_hello_request_have_the_version_of_the_page() {
 }
 
 #[test]
-fn enums_have_the_numbers_that_the_tables_say() {
+fn enum_numbers_match_the_tables() {
     fn code<'de, T: serde::Deserialize<'de>>() -> Vec<(usize, &'static str)> {
         variants::all::<T>().into_iter().enumerate().collect()
     }
@@ -102,7 +102,7 @@ fn enums_have_the_numbers_that_the_tables_say() {
 }
 
 #[test]
-fn numbers_have_the_names_that_the_tables_say() {
+fn names_of_numbers_match_the_tables() {
     fn check<T: Debug>(name: &str, named: impl Fn(u8) -> Option<T>) {
         let code: Vec<(usize, String)> =
             (0..=u8::MAX).filter_map(|n| Some((n.into(), format!("{:?}", named(n)?)))).collect();
@@ -119,7 +119,7 @@ fn numbers_have_the_names_that_the_tables_say() {
 }
 
 #[test]
-fn flags_have_the_bits_that_the_table_says() {
+fn flag_bits_match_the_table() {
     let page: Vec<(Flags, &str)> = numbered("Flags").into_iter().map(|(bit, name)| (Flags(1 << bit), name)).collect();
     let code = [
         (Flags::SATURATED, "SATURATED"),
@@ -136,7 +136,7 @@ fn flags_have_the_bits_that_the_table_says() {
 }
 
 #[test]
-fn notices_have_the_bits_that_the_table_says() {
+fn notice_bits_match_the_table() {
     let page: Vec<(u8, &str)> = numbered("Notices").into_iter().map(|(bit, name)| (1 << bit, name)).collect();
     let code = [
         (notice::OPTION_BYTES, "OPTION_BYTES"),
@@ -147,9 +147,9 @@ fn notices_have_the_bits_that_the_table_says() {
     assert_eq!(page.len(), notice::SENTENCES.len());
 }
 
-/// The page of faults has a row for each number that the protocol has, and for each refusal to arm or to play.
+/// The page of faults has a row for each number of the protocol, and for each refusal to arm or to play.
 #[test]
-fn the_page_of_faults_has_all_that_a_board_reports() {
+fn the_page_of_faults_lists_everything_that_a_board_reports() {
     let on_page = |heading: &str| numbers_and_names(&table_of(FAULTS, heading));
     assert_eq!(on_page("## Faults"), numbered("Fault"));
     assert_eq!(on_page("## Resets"), numbered("ResetCause"));
@@ -163,7 +163,7 @@ fn the_page_of_faults_has_all_that_a_board_reports() {
 
 /// The fields that a table names, in order, are those of the value.
 #[test]
-fn fields_are_in_the_order_that_the_tables_say() {
+fn field_order_matches_the_tables() {
     fn check(name: &str, value: &impl Debug) -> usize {
         let table = table(&format!("### `{name}`"));
         let row = table.iter().find(|row| row[1] == variants::name(value)).unwrap();
@@ -218,7 +218,7 @@ fn layouts_have_no_gap() {
 
 /// The table of limits: tags in order, lengths, and the defaults of omitted limits.
 #[test]
-fn limits_are_those_of_the_table() {
+fn limits_match_the_table() {
     let (_, after) = PROTOCOL.split_once("\n| tag | bytes |").unwrap();
     let rows: Vec<Vec<&str>> = after
         .lines()
@@ -245,6 +245,6 @@ fn limits_are_those_of_the_table() {
 }
 
 #[test]
-fn a_telemetry_period_is_whole_ticks_and_no_shorter_than_asked_for() {
+fn a_telemetry_period_is_rounded_up_to_whole_ticks() {
     assert_eq!([40_000, 8_000, 44_100, 999].map(|tick_hz| telemetry_period_ticks(tick_hz, 1_000)), [40, 8, 45, 1]);
 }

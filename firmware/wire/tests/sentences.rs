@@ -13,10 +13,9 @@ use frixel_wire::hello::{Hello, notice};
 use frixel_wire::message::{ConfigField, ConfigRefusal, Refusal};
 use support::samples;
 
-/// All sentences about the samples, which a person reads when one changes: each says what was found, with its numbers,
-/// and what to do.
+/// Sentences for all samples. Each states what was found, with its numbers, and what to do; review it when it changes.
 #[test]
-fn sentences_are_those_of_the_golden_file() {
+fn sentences_match_the_golden_file() {
     let outside = samples::config_refusal(ConfigField::VoltagePeak, ConfigRefusal::WHOLE_SCENE);
     let no_least = ConfigRefusal { min: f32::NEG_INFINITY, layer: 2, field: ConfigField::Gain, ..outside };
     let no_largest = ConfigRefusal { max: f32::INFINITY, ..outside };
@@ -43,7 +42,7 @@ fn sentences_are_those_of_the_golden_file() {
 
 /// Every flag has a sentence, any two are combined into one text, and unknown bits are reported.
 #[test]
-fn flags_say_all_that_is_set() {
+fn every_set_flag_has_its_sentence() {
     assert_eq!(Flags::default().to_string(), "nothing limits the output");
     let named: Vec<String> = (0..16).map(|bit| Flags(1 << bit).to_string()).collect();
     for (bit, sentence) in named.iter().enumerate() {
@@ -65,7 +64,7 @@ fn flags_say_all_that_is_set() {
 
 /// Unknown bits are omitted, since only a newer host can interpret them.
 #[test]
-fn every_known_notice_is_said() {
+fn every_known_notice_has_its_sentence() {
     let said = |notices| Hello { notices, ..samples::hello() }.notice_sentences().collect::<Vec<_>>();
     assert!(said(0).is_empty() && said(0x80).is_empty());
     for (bit, sentence) in notice::SENTENCES {

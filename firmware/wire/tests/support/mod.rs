@@ -1,4 +1,4 @@
-//! Helpers shared by several tests, not all of which use all of it.
+//! Helpers shared by several tests.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "helpers of tests fail as tests do")]
 #![allow(dead_code, unreachable_pub)]
 

@@ -1,4 +1,4 @@
-//! At least one value of every variant of every message; `golden.rs` checks that none is missing.
+//! At least one value of every variant of every message; `golden.rs` checks that the set is complete.
 
 use frixel_wire::fault::{Fault, Flags, State};
 use frixel_wire::frame::FRAME_MAX_LEN;
