@@ -1,5 +1,5 @@
 //! Fills the coefficients of a tick from a finger on a coating and a scene of one layer, and runs the tick on the
-//! desktop, like a firmware that takes no scene from a host.
+//! desktop, like firmware with a built-in scene.
 //!
 //! `cargo run -p frixel-control --example desktop` runs it, and so does `cargo test`.
 

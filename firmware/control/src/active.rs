@@ -30,7 +30,7 @@ pub struct Active {
 
 impl Active {
     /// Coefficients without a scene. All bits are zero, so that a static of them takes no flash.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not on the stack")]
     pub const fn new() -> Self {
         Self {
             layers: ActiveLayers::EMPTY,
@@ -54,8 +54,8 @@ impl Active {
         self.prediction_off = false;
     }
 
-    /// Lowers coefficients to a board's ceilings, and returns whether any was above. No tick has to check the ceilings
-    /// then, since its code is at most the carrier's. Without a scene, the output is zero.
+    /// Lowers coefficients to a board's ceilings, and returns whether any was above. Ticks need not check the ceilings
+    /// again, since no code exceeds the carrier's largest. Without a scene, the output is zero.
     pub(crate) fn limit_to(&mut self, ceilings: &Ceilings) -> bool {
         if self.table.is_empty() {
             return false;
@@ -67,8 +67,8 @@ impl Active {
         let host_timeout_ticks = self.host_timeout_ticks.min(ceilings.host_timeout_max_ticks);
         let is_lowered = carrier != self.carrier
             || host_timeout_ticks != self.host_timeout_ticks
-            || is_other(voltage_max_v_rms, self.voltage_max_v_rms)
-            || is_other(slew_step_v, self.slew_step_v);
+            || differs(voltage_max_v_rms, self.voltage_max_v_rms)
+            || differs(slew_step_v, self.slew_step_v);
         self.carrier = carrier;
         self.voltage_max_v_rms = voltage_max_v_rms;
         self.slew_step_v = slew_step_v;
@@ -113,6 +113,6 @@ fn from_zero_to(max: f32, number: f32) -> f32 {
     }
 }
 
-fn is_other(one: f32, other: f32) -> bool {
+fn differs(one: f32, other: f32) -> bool {
     one.to_bits() != other.to_bits()
 }

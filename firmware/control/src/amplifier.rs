@@ -57,11 +57,11 @@ impl SwitchingTime {
         Self(time_s)
     }
 
-    /// The number of ticks in which this time has passed, rounded up.
+    /// This time in ticks, rounded up.
     pub(crate) fn ticks(self, tick_hz: u32) -> u32 {
         let ticks = self.0 * tick_hz as f32;
         let whole = ticks as u32;
-        // Avoid rounding up a product that exceeds a whole number only by rounding.
+        // Do not round up a product that exceeds a whole number only by a rounding error.
         whole + u32::from(ticks - whole as f32 > 1e-3)
     }
 }

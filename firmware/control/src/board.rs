@@ -153,7 +153,7 @@ impl Board {
         }
     }
 
-    /// The real board of a name.
+    /// The real board with this name; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "nucleo-g474re" => Some(Self::NUCLEO_G474RE),
@@ -163,8 +163,8 @@ impl Board {
         }
     }
 
-    /// This board with another resistance between amplifier and electrode, whose bring-up has stored the full scale as
-    /// the largest voltage. What remains are the edges of the resistance, and its bound.
+    /// This board with another resistance between amplifier and electrode, and with the full scale stored as its
+    /// largest voltage. The edges and the touch bound are those of the resistance.
     #[must_use]
     pub const fn behind(self, series_resistance_ohm: f32) -> Self {
         let electrode_s = series_resistance_ohm * self.limits.electrode_capacitance_max_f;

@@ -76,7 +76,7 @@ impl CarrierTiming {
 pub(crate) struct Carrier {
     /// 1 in the first half of a period, -1 in the second.
     sign: i32,
-    /// Ticks until the next edge, this one included.
+    /// Ticks until the next edge, including the current one.
     left_ticks: u32,
     /// Volt-seconds so far, in ticks at full scale.
     integral: I17F15,

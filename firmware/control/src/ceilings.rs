@@ -45,7 +45,7 @@ impl Ceilings {
     }
 
     /// The nearest allowed length of a half period, in ticks.
-    #[allow(clippy::manual_clamp, reason = "`clamp` panics where its ends are the wrong way round")]
+    #[allow(clippy::manual_clamp, reason = "`clamp` panics if its ends are reversed")]
     pub(crate) fn half_period_ticks(&self, ticks: u32) -> u32 {
         ticks.min(self.half_period_max_ticks).max(HALF_PERIOD_MIN_TICKS)
     }

@@ -4,12 +4,13 @@ use crate::Track;
 use crate::board::Board;
 use crate::tick_count::is_past;
 
-/// Touch data is stale after this many report periods without a report, and after [`STALE_MAX_S`].
+/// Touch data is stale after this many report periods without a report, at most [`STALE_MAX_S`].
 const STALE_AFTER_PERIODS: f32 = 4.0;
 /// Longest time without a report for which a board drives a finger, in s, for any report period. A lifted finger must
 /// not meet a driven screen when it returns, and the position of the finger is unknown after this time.
 const STALE_MAX_S: f32 = 40e-3;
-/// Number of equal parts of that time, in the last of which the friction falls: from the third report period on.
+/// The friction falls in the last of this many equal parts of the time until touch data is stale: after three report
+/// periods.
 const FALL_PART: f32 = 4.0;
 
 /// Ticks without a report until touch data is stale.

@@ -28,17 +28,17 @@ const FLOOR: f32 = 0.04;
 /// as 5 %), a deviation of the amplifier's speed from its specification, and the 2 us for which the newest code is out
 /// when the monitor is read.
 const GAIN_TOLERANCE: f32 = 0.25;
-/// Time, in s. The monitor faults once wrong ticks exceed a third of the correct ones by the ticks in this time. It is
-/// long compared with a disturbed reading. If the monitor is wrong in every tick, the output is off within 0.5 ms at
+/// The monitor faults once wrong ticks exceed a third of the correct ones by the ticks in this time, in s. It is long
+/// compared with a disturbed reading. If the monitor is wrong in every tick, the output is off within 0.5 ms at
 /// 40 kHz, including the ticks to detect a wrong voltage and to output zero.
 const WRONG_S: f32 = 0.4e-3;
 /// Correct ticks that compensate one wrong tick. A DAC that holds its last code is correct in every other half period
 /// of a square carrier: it is found after three times that time, or in the first half period longer than that. A
 /// healthy amplifier has no wrong ticks.
 const RIGHT_PER_WRONG: u32 = 3;
-/// Largest distance in s of two low samples of the ready line, or two high ones while it must be low, that are a fault.
-/// A single sample is a disturbance, of an opto-isolator or a level shifter at an edge of hundreds of volts (assumed).
-/// A line that stays wrong is found in the next tick.
+/// Two wrong samples of the ready line within this time, in s, are a fault. A single one may be a disturbance of an
+/// opto-isolator or a level shifter at an edge of hundreds of volts (assumed). A line that stays wrong is detected in
+/// the next tick.
 const READY_S: f32 = 1e-3;
 /// Ticks between an edge of the enable and the first reading that shows it for a whole tick, plus one for an edge
 /// anywhere within its tick.

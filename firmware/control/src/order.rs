@@ -55,7 +55,7 @@ pub enum Order<'a> {
 
 impl Order<'_> {
     /// Whether the order restarts the host timeout because it follows directly from a frame. Other orders may have
-    /// waited, such as a play behind a commit.
+    /// waited, such as a play that was sent during a commit.
     pub fn is_sign_of_life(&self) -> bool {
         matches!(self, Self::HostHeard | Self::Arm | Self::Disarm | Self::Stop | Self::ClearFault)
     }

@@ -40,7 +40,7 @@ pub struct StreamBuffer {
 
 impl StreamBuffer {
     /// An empty buffer.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not on the stack")]
     pub const fn new() -> Self {
         Self {
             slots: [const { AtomicU32::new(0) }; STREAM_LEN],
@@ -232,7 +232,7 @@ impl<'a> Player<'a> {
         self.last = Some(last);
     }
 
-    /// Stops the stream at once, without a fade: `now` is no sample.
+    /// Stops the stream at once, without a fade, and clears `now`.
     pub(crate) fn stop(&mut self, now: &mut StreamSample) {
         self.phase = Phase::Over;
         self.weight = 0.0;

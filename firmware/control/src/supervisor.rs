@@ -18,8 +18,8 @@ pub(crate) struct Supervisor {
     host_heard_at_tick: u32,
     host_timeout_ticks: u32,
     host_silent: bool,
-    /// Whether the arm switch was open in some tick since the reset or the last disarming. If it is held now, it was
-    /// pressed since.
+    /// Whether the arm switch was open in some tick since the reset or the last disarming, so that a switch that is
+    /// held now was pressed since.
     switch_was_released: bool,
     monitor: MonitorCheck,
 }
@@ -56,7 +56,7 @@ impl Supervisor {
             self.host_heard_at_tick = now_tick;
         }
         match (order, self.state) {
-            // Ignored until the switch was released: the host may not know yet that it must be pressed again.
+            // Ignored until the switch was released: the host may have sent it before the board disarmed.
             (Order::Arm, State::Disarmed) if self.switch_was_released => {
                 self.state = State::Armed;
                 self.host_silent = false;

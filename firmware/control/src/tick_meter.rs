@@ -16,7 +16,7 @@ pub struct TickMeter {
 
 impl TickMeter {
     /// A meter of ticks whose drive is late after `deadline_cycles`.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not on the stack")]
     pub const fn new(deadline_cycles: u32) -> Self {
         Self {
             deadline_cycles,

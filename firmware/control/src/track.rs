@@ -21,7 +21,7 @@ pub struct Track {
     /// Rate of the place at `from_tick`, in m/s. It differs from the finger's velocity by a correction that leads
     /// the place from the previous track to the new estimate, so that the place does not jump at a report.
     pub path_velocity_m_per_s: [f32; 2],
-    /// Half the rate of that rate, in m/s^2.
+    /// Half the acceleration of the place, in m/s^2.
     pub path_half_acceleration_m_per_s2: [f32; 2],
     /// The finger's velocity at `from_tick`, in m/s.
     pub velocity_m_per_s: [f32; 2],

@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn the_origin_has_the_angle_zero_and_no_place_has_none() {
+    fn the_origin_and_nan_have_the_angle_zero() {
         for (x_m, y_m) in [(0.0, 0.0), (-0.0, -0.0), (1e-13, -1e-13), (f32::NAN, f32::NAN)] {
             assert_eq!(angle_turns(x_m, y_m).to_bits(), 0, "{x_m} {y_m}");
         }

@@ -18,7 +18,7 @@ impl BitmapPool {
     #[allow(
         clippy::new_without_default,
         clippy::large_stack_arrays,
-        reason = "64 KiB belong in a static or a box, not into a value made in passing"
+        reason = "64 KiB belong in a static or a box, not on the stack"
     )]
     pub const fn new() -> Self {
         Self { bytes: [const { AtomicU8::new(0) }; BITMAP_POOL_LEN] }

@@ -2,8 +2,8 @@
 //!
 //! Used by the host's compiler, not by a board. [`electric_friction_max_n`] works cell by cell on the scene's grid, in
 //! the order and with the `f32` operations of the tick. Rounding is monotone, so no sum or product of the tick leaves
-//! the interval of the same operation. Only rounding within a layer needs a margin, [`ROUNDING`]. There is no lower
-//! bound, since every ramp takes the friction down to zero, and must be smooth there.
+//! the interval of the same operation. Only rounding within a layer needs a margin, [`ROUNDING`]. A lower
+//! bound would be useless: ramps take the friction down to zero, so the board's table has to reach down there.
 
 use crate::grid::Grid;
 use crate::header::{Header, upper_half_rounded_up};

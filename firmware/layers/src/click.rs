@@ -66,7 +66,7 @@ impl Click {
 }
 
 impl ClickNumber {
-    /// Electric friction of the click for a finger on one side of a line, or `beyond` it.
+    /// Electric friction of the click at a line; `beyond` is the side on which the finger is.
     #[inline]
     pub(crate) fn across(self, beyond: bool, context: &mut Context) -> f32 {
         let Some((click, slot)) = self.find(context) else { return 0.0 };

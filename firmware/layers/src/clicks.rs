@@ -16,8 +16,7 @@ pub(crate) struct ClickCoefficients {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ClickNumber(pub(crate) u8);
 
-/// State of all clicks: the position of the finger at the previous evaluation. It belongs to the tick; coefficients are
-/// constant.
+/// State of all clicks: where the finger was at the previous evaluation, and the clicks in progress.
 ///
 /// The state counts evaluations of the scene instead of ticks, so that a tick without an evaluation does not hide a
 /// crossing.

@@ -29,8 +29,8 @@ impl Inputs {
     }
 }
 
-/// Rectangles are tested in integer steps of 2^-28 m, 3.7 nm, since a tick compares integers faster than `f32`. All
-/// coordinates of a scene are within 4 m.
+/// Integer steps per metre, each 3.7 nm. Rectangles are tested in steps, since a tick compares integers faster than
+/// `f32`. All coordinates of a scene are within 4 m.
 pub(crate) const STEPS_PER_M: f32 = (1 << 28) as f32;
 
 /// A coordinate in steps; saturates at the limits of the integer.

@@ -2,8 +2,8 @@
 //! 1,480 instructions on a Cortex-M4F.
 #![allow(dead_code, reason = "which of these is used depends on the features that are on")]
 
-/// Half of this is the magnitude above which an `f32` has no fraction bits. Adding and subtracting it rounds to an
-/// integer.
+/// Adding and subtracting this number rounds to an integer: an `f32` from 2^23 to 2^24 has no fraction bits, and the
+/// sum with a magnitude below 2^22 stays in this range.
 const WHOLE: f32 = 1.5 * (1 << 23) as f32;
 
 /// Difference of an angle from the nearest whole turn, from -1/2 to 1/2, for magnitudes below 2^22.

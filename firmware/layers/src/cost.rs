@@ -42,7 +42,10 @@ impl Cost {
     pub(crate) const ZERO: Self = Self::new(0, 0);
 
     /// Core cycles on a Cortex-M4F, and on a Cortex-M0+.
-    #[cfg_attr(not(feature = "every-core"), allow(unused_variables, reason = "of a core that the image is not for"))]
+    #[cfg_attr(
+        not(feature = "every-core"),
+        allow(unused_variables, reason = "costs of a core that the image is not built for")
+    )]
     pub(crate) const fn new(cortex_m4f: u32, cortex_m0_plus: u32) -> Self {
         Self {
             cortex_m4f,

@@ -49,7 +49,7 @@ impl FingerLaw {
             .flat_map(|point| Point { x: point.voltage_v_rms, y: point.electric_friction_n }.write())
     }
 
-    /// The power of the voltage with which friction grows below the first point.
+    /// Exponent below the first point: friction grows as this power of the voltage.
     pub const fn exponent(&self) -> f32 {
         self.exponent
     }

@@ -130,7 +130,7 @@ impl Header {
         put_at(&mut bytes, field::FLAGS, [flags]);
         let mut header = *self;
         if let Some(law) = self.law() {
-            // Their fields hold the law's numbers.
+            // The fields of radius and stiffness hold the law's numbers.
             header.finger_radius_m = law.exponent();
             header.stiffness_pa_per_m = f32::from_bits(u32::from(law.point_count()));
             header.effective_gap_m = 0.0;

@@ -70,7 +70,7 @@ pub(crate) fn larger<T: PartialOrd + Copy>(one: T, other: T) -> T {
     if one > other || is_nan(one) { one } else { other }
 }
 
-#[allow(clippy::eq_op, reason = "only not-a-number differs from itself")]
+#[allow(clippy::eq_op, reason = "only NaN differs from itself")]
 fn is_nan<T: PartialOrd + Copy>(value: T) -> bool {
     value != value
 }
@@ -82,7 +82,7 @@ mod tests {
     const ZERO: Interval<f32> = Interval { low: 0.0, high: 0.0 };
 
     #[test]
-    fn not_a_number_is_no_bound() {
+    fn nan_is_no_bound() {
         let endless = Interval { low: f32::NEG_INFINITY, high: f32::INFINITY };
         assert!(endless.times(ZERO).high.is_nan());
         assert!(ZERO.hull(endless.times(ZERO)).high.is_nan());

@@ -184,7 +184,7 @@ kinds! {
     12 => Direction in direction, feature "direction" bit 14;
 }
 
-// The session also handles streams.
+// The session uses this bit too.
 const _: () = assert!(frixel_wire::hello::feature::STREAM == 1 << 9);
 
 /// The Cargo feature of a kind of layer. Several kinds may share one.

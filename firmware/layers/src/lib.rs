@@ -123,8 +123,8 @@ pub const FEATURES: u32 = kinds::KIND_FEATURES_ON
     | if cfg!(feature = "polygon") { feature::POLYGON } else { 0 }
     | if cfg!(feature = "empirical") { feature::EMPIRICAL } else { 0 };
 
-/// Name of each feature of the hello by its bit, in the order of the bits: the board's Cargo feature, where there is
-/// one.
+/// Bit and name of each feature of the hello, by ascending bit. The name is that of the board's Cargo feature, if there
+/// is one.
 pub fn feature_names() -> impl Iterator<Item = (u32, &'static str)> {
     let all = || KIND_FEATURES.iter().map(|kind| (kind.bit, kind.name)).chain(feature::NAMES);
     (0..u32::BITS).filter_map(move |bit| all().find(|(named, _)| *named == 1 << bit))

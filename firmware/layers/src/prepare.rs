@@ -25,7 +25,7 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
 }
 
 /// Phase increment of a frequency per tick, in steps of 2^-32 turns, modulo a turn. The frequency is less than half of
-/// the tick rate, and may be negative. Zero without a tick rate, and for not-a-number.
+/// the tick rate, and may be negative. Zero without a tick rate, and for NaN.
 #[cfg_attr(
     not(any(feature = "vibration", feature = "grating", feature = "rings")),
     allow(dead_code, reason = "only these change with time")
@@ -33,7 +33,7 @@ pub fn ticks(time_s: f32, tick_hz: u32) -> u32 {
 pub(crate) fn steps_per_tick(frequency_hz: f32, tick_hz: u32) -> u32 {
     let Some(divisor) = NonZeroU32::new(tick_hz) else { return 0 };
     let whole_hz = frequency_hz.abs() as u32;
-    // Units of 2^-32 Hz are finer than any accepted frequency.
+    // Units of 2^-32 Hz are finer than the spacing of `f32` at 0.01 Hz, the lowest frequency of a vibration.
     let fraction = ((frequency_hz.abs() - whole_hz as f32) * (1u64 << 32) as f32) as u32;
     let (steps, remainder) = divide_wide(whole_hz, fraction, divisor);
     let steps = steps as u32 + u32::from(remainder >= tick_hz - tick_hz / 2);

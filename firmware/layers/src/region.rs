@@ -150,13 +150,13 @@ fn put_numbers(record: &mut RecordBytes, numbers: [f32; 4]) {
     }
 }
 
-/// Largest number of a polygon's edges at the height of one place. Between two vertices, it is the number at the upper
-/// one.
+/// Largest number of a polygon's edges that a horizontal line crosses. Between two vertices, it is the number at the
+/// upper one.
 fn edges_level_max(vertices: &[Point]) -> u32 {
     vertices.iter().map(|vertex| edges_level(vertices, vertex.y)).max().unwrap_or(0)
 }
 
-/// Number of a polygon's edges at the height of a place: with exactly one end below it.
+/// Number of a polygon's edges that the horizontal line at `y_m` crosses: those with exactly one end below it.
 fn edges_level(vertices: &[Point], y_m: f32) -> u32 {
     let mut was_below = vertices.last().is_some_and(|vertex| vertex.y > y_m);
     let mut count = 0;

@@ -38,7 +38,7 @@ mod tests {
     }
 
     #[test]
-    fn the_root_of_a_tiny_a_negative_and_no_number_is_zero() {
+    fn the_root_of_tiny_and_negative_numbers_and_nan_is_zero() {
         for x in [0.0, -0.0, -1.0, f32::NAN, f32::NEG_INFINITY, 1e-31, f32::MIN_POSITIVE] {
             assert_eq!(square_root(x).to_bits(), 0, "{x}");
         }

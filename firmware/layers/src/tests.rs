@@ -59,7 +59,7 @@ fn assert_close(found: f32, expected: f32) {
 }
 
 #[test]
-fn a_region_takes_its_left_and_top_edge_and_leaves_right_and_bottom() {
+fn a_rectangle_includes_only_its_left_and_top_edges() {
     let mut bench = Bench::new();
     let layer = bench.load(&constant(Blend::Replace, 2.0, 0.25));
     for (x_m, y_m, expected) in
@@ -70,7 +70,7 @@ fn a_region_takes_its_left_and_top_edge_and_leaves_right_and_bottom() {
 }
 
 #[test]
-fn blends_do_what_they_say() {
+fn blends_match_their_definitions() {
     for (blend, below_n, expected) in [
         (Blend::Add, 0.5, 0.75),
         (Blend::Replace, 0.5, 0.25),
@@ -85,7 +85,7 @@ fn blends_do_what_they_say() {
 }
 
 #[test]
-fn a_gain_is_on_the_friction_of_its_layer_alone() {
+fn a_gain_scales_only_its_own_layer() {
     let mut bench = Bench::new();
     let layer = bench.load(&constant(Blend::Add, -2.0, 0.25));
     assert_close(bench.over(&layer, 0.75, at(0.02, 0.03)), 0.25);
@@ -113,7 +113,7 @@ fn an_ellipse_touches_its_rectangle() {
 /// Every place of a square that is cut along a crooked line, vertices and edges included, is in exactly one half.
 #[cfg(feature = "polygon")]
 #[test]
-fn polygons_side_by_side_neither_overlap_nor_gap() {
+fn adjacent_polygons_neither_overlap_nor_leave_a_gap() {
     let (left, cut, right) = (
         [(0.07, 0.01), (0.01, 0.01), (0.01, 0.07), (0.05, 0.07)],
         [(0.03, 0.05), (0.055, 0.04), (0.025, 0.03), (0.06, 0.02)],
@@ -259,7 +259,7 @@ fn a_grating_swings_between_trough_and_crest() {
 /// The phase is the tick number times the step, without a jump, also around 2^31 and 2^32 ticks.
 #[cfg(all(feature = "grating", feature = "rings"))]
 #[test]
-fn what_drifts_is_exact_after_any_number_of_ticks() {
+fn drifting_waves_stay_exact_after_any_number_of_ticks() {
     use crate::{Grating, Rings, Wave};
     let (wave, trough_n, crest_n) = (Wave::Sine, 0.0, 1.0);
     for drift_hz in [2.5_f32, -0.01, 333.3] {
@@ -284,7 +284,7 @@ fn what_drifts_is_exact_after_any_number_of_ticks() {
 
 #[cfg(feature = "noise")]
 #[test]
-fn noise_stays_within_its_range_and_is_its_seeds() {
+fn noise_stays_within_its_range_and_depends_on_its_seed() {
     let mut bench = Bench::new();
     let mut noise = |seed| {
         let kind = Layer::Noise(crate::Noise {
@@ -377,7 +377,7 @@ mod clicks {
             let left = (1.0 - tick as f32 / 40.0).max(0.0);
             assert_close(found, 0.25 + left * left);
         }
-        // Ticks with something else to do lie between.
+        // A crossing counts even if ticks without an evaluation lie in between.
         let back = slide(&mut bench, &layer, 170, [0.03]);
         assert_close(back[0], 1.25);
     }
@@ -476,7 +476,7 @@ fn bursts_begin_when_their_layer_is_switched_on() {
     // At all these ticks the wave is high.
     assert_close(friction_n(&layers, 1_650), 1.25);
     assert_close(friction_n(&layers, 2_050), 0.25);
-    // A layer that is on goes on.
+    // A layer that is already on is not restarted.
     layers.set(0, true, 1.0, 500);
     assert_close(friction_n(&layers, 2_050), 0.25);
     for begin in [2_850, 0_u32.wrapping_sub(1_100)] {

@@ -1,11 +1,11 @@
 //! Scenes without a largest electric friction; `frixel-scene` compares that of others with the reference (`bounds`).
-#![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
+#![allow(clippy::float_cmp, reason = "exact results are compared exactly")]
 
 use frixel_layers::{Blend, Grating, Layer, Record, Wave, electric_friction_max_n};
 use frixel_testkit::{HEADER, constant, record};
 
 #[test]
-fn a_scene_that_asks_for_nothing_has_the_bound_zero() {
+fn a_scene_without_positive_friction_has_the_bound_zero() {
     assert_eq!(electric_friction_max_n(&HEADER, &[], &[]), Some(0.0));
     assert_eq!(electric_friction_max_n(&HEADER, &[constant(-0.02)], &[]), Some(0.0));
 }

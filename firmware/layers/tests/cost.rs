@@ -37,7 +37,7 @@ fn a_stream_costs_at_every_place() {
 
 /// An edge level with the finger takes a closer test.
 #[test]
-fn a_polygon_costs_more_the_more_of_its_edges_are_level_with_one_place() {
+fn a_polygon_costs_more_with_more_edges_at_one_height() {
     for core in [Core::CortexM4f, Core::CortexM0Plus] {
         polygons_cost_by_their_level_edges(core);
     }
@@ -60,7 +60,7 @@ fn polygons_cost_by_their_level_edges(core: Core) {
 
 /// Neither core's costs follow from the other's by a factor.
 #[test]
-fn noise_is_dearer_than_a_grating_by_more_without_a_floating_point_unit() {
+fn noise_costs_relatively_more_without_a_floating_point_unit() {
     let noise = Noise { seed: 1, wavelength_min_m: 1e-3, wavelength_max_m: 2e-3, low_n: 0.0, high_n: 0.01 };
     let noise = of_record(&Record { layer: Layer::Noise(noise), ..CONSTANT }, &[]);
     let constant = of_record(&CONSTANT, &[]);
@@ -70,7 +70,7 @@ fn noise_is_dearer_than_a_grating_by_more_without_a_floating_point_unit() {
 
 /// The cycles of a Cortex-M4F contain flash wait states, those of a Cortex-M0+ do not: it runs from RAM.
 #[test]
-fn cycles_are_those_of_the_core() {
+fn cycles_include_the_wait_states_of_the_core() {
     let worst = |core| worst_of_scene(&HEADER, &[CONSTANT], &[], core);
     let (m4f, m0_plus) = (worst(Core::CortexM4f), worst(Core::CortexM0Plus));
     assert_eq!(m4f.cycles(Core::CortexM4f), (m4f.core_cycles * FLASH_WAIT_PERCENT).div_ceil(100));

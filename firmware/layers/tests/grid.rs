@@ -4,7 +4,7 @@ use frixel_layers::{Cell, Grid, Point, Region};
 use proptest::prelude::*;
 
 #[test]
-fn cells_tell_where_they_are() {
+fn cells_have_their_centres() {
     let mut grid = Grid::EMPTY;
     grid.reset(0.16, 0.32);
     grid.add(40, &Region::Rectangle { x_m: 0.021, y_m: 0.041, width_m: 0.008, height_m: 0.018 }, &[]);

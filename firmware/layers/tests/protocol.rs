@@ -27,7 +27,7 @@ fn rows() -> Vec<[&'static str; 4]> {
 }
 
 #[test]
-fn features_have_the_bits_that_the_table_says() {
+fn feature_bits_match_the_table() {
     let name = |bit: u32, name: &str| match bit {
         feature::HOST_TOUCH => "`HOST_TOUCH`".to_owned(),
         _ => format!("`{}`", name.to_uppercase().replace('-', "_")),
@@ -40,7 +40,7 @@ fn features_have_the_bits_that_the_table_says() {
 
 /// The row of kinds, and the table of their parameters.
 #[test]
-fn kinds_have_the_numbers_that_the_tables_say() {
+fn kind_numbers_match_the_tables() {
     let row = table("\nA record:\n").into_iter().find(|row| row[2].starts_with("kind: ")).unwrap();
     let listed = row[2].strip_prefix("kind: ").unwrap().split(", ");
     let numbered = |kind: &str| {

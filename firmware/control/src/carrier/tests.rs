@@ -41,7 +41,7 @@ proptest! {
             let opposite: Vec<i32> = pair[0].iter().map(|code| -code).collect();
             prop_assert_eq!(&opposite, pair[1]);
         }
-        // And it has the codes of a carrier without a past.
+        // The codes are those of a new carrier.
         let sorted = |half_wave: &[i32]| {
             let mut magnitudes: Vec<i32> = half_wave.iter().map(|code| code.abs()).collect();
             magnitudes.sort_unstable();
@@ -63,9 +63,9 @@ fn fresh_codes(timing: &CarrierTiming, envelope_v_rms: f32, half_period_ticks: u
     codes[4 * half_period_ticks as usize..].to_vec()
 }
 
-/// With conversions that no session computes, and envelopes that no table returns.
+/// Includes conversions that no session computes, and envelopes that no table returns.
 #[test]
-fn no_envelope_and_no_conversion_give_a_code_beyond_the_limit() {
+fn no_envelope_or_conversion_exceeds_the_largest_code() {
     let numbers = [0.0, 1.0, -1.0, 1e3, -1e3, f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
     for (envelope_v_rms, codes_per_v_rms) in numbers.into_iter().flat_map(|one| numbers.map(|other| (one, other))) {
         for (waveform, code_max) in [Waveform::Square, Waveform::Sine]
@@ -109,7 +109,7 @@ fn a_carrier_starts_a_quarter_period_before_an_edge() {
 
 /// After any drive, a restart reverses the remaining charge.
 #[test]
-fn a_carrier_that_rested_begins_on_the_side_that_takes_the_integral_back() {
+fn a_restarted_carrier_moves_the_integral_towards_zero() {
     let timing = timing(Waveform::Square, 20);
     for (ticks, first_sign) in [(0, 1), (7, -1), (10, -1), (20, 1), (25, 1), (40, 1)] {
         let mut carrier = Carrier::new(&timing);
@@ -127,7 +127,7 @@ fn a_faster_carrier_takes_its_edge_no_later_than_its_own_half_period() {
     let slow = timing(Waveform::Square, 20);
     let fast = timing(Waveform::Square, 4);
     let mut carrier = Carrier::new(&slow);
-    codes(&mut carrier, &slow, 1.0, 11); // one tick behind an edge, 19 before the next
+    codes(&mut carrier, &slow, 1.0, 11); // one tick after an edge, 19 before the next
     carrier.retime(&fast);
     let after = codes(&mut carrier, &fast, 1.0, 12);
     assert_eq!(
@@ -141,7 +141,7 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
     let slow = timing(Waveform::Square, 20);
     let fast = timing(Waveform::Square, 4);
     let mut carrier = Carrier::new(&fast);
-    codes(&mut carrier, &fast, 1.0, 3); // one tick behind an edge, 3 before the next
+    codes(&mut carrier, &fast, 1.0, 3); // one tick after an edge, 3 before the next
     carrier.retime(&slow);
     let after = codes(&mut carrier, &slow, 1.0, 24);
     let positive = after.iter().filter(|code| **code > 0).count();
@@ -250,9 +250,9 @@ fn a_sine_is_a_sine() {
     }
 }
 
-/// The electrode has the rms voltage of the envelope behind the lags of a simulated amplifier, and behind those of
-/// `docs/board/hardware.md`: 20 kHz, and 68 kOhm before 0.53 nF. The single lag of a board's limits stands for two from
-/// half periods of six time constants on.
+/// The electrode has the rms voltage of the envelope, behind the lag of the simulated amplifier and behind those of
+/// `docs/board/hardware.md`: 20 kHz, and 68 kOhm before 0.53 nF. The single lag of a board's limits replaces both for
+/// half periods of six time constants or more.
 #[test]
 fn an_electrode_behind_two_lags_has_the_voltage_of_the_envelope() {
     let simulator = (0.0, 20e-6, &[4, 5, 7, 10, 15, 20, 21, 40][..]);

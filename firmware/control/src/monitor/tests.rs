@@ -264,7 +264,7 @@ fn a_gain_that_is_off_by_40_percent_is_found_within_20_ms_from_10_v_peak_on() {
 /// A gain that is too high by a quarter is tolerated. The current of that single fault is below its limit, and so is
 /// the current of the few milliseconds in which the gain may be as high as a single tick tolerates.
 #[test]
-fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_sees_it() {
+fn an_undetected_gain_error_stays_within_the_single_fault_limit() {
     let bound = TouchBound::behind(Board::NUCLEO_G474RE.limits.series_resistance_ohm);
     for half_period_ticks in [20, 80, 160] {
         let voltage_v = bound.voltage_max_v_peak(BOARD.tick_hz as f32 / (2 * half_period_ticks) as f32);
@@ -281,7 +281,7 @@ fn a_gain_is_too_high_by_no_more_than_a_single_fault_may_be_before_the_monitor_s
 
 /// Offset and a gain within tolerance, together, at every carrier: the offset cancels or is allowed for.
 #[test]
-fn an_offset_within_tolerance_is_no_gain() {
+fn an_offset_within_tolerance_is_no_gain_fault() {
     for (offset_v, gain) in [(7.5, 1.0), (-7.5, 1.0), (4.0, 1.1), (-4.0, 0.9)] {
         for voltage_v in [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0] {
             for half_period_ticks in [4, 5, 7, 20, 40, 80, 160] {
@@ -328,7 +328,7 @@ fn a_dac_that_holds_its_last_code_is_found_within_1_5_ms_or_half_a_millisecond_a
 
 /// Lifts, stops and re-touches at every phase of the carrier, after and before the amplifier has switched.
 #[test]
-fn an_amplifier_that_switches_as_its_board_says_never_faults() {
+fn an_amplifier_that_switches_as_specified_never_faults() {
     for (decay, sample_step) in DECAYS.into_iter().flat_map(|decay| SAMPLE_STEPS.map(|step| (decay, step))) {
         for voltage_v in [5.0, 10.7, 20.0, 50.0, 100.0, 200.0] {
             for half_period_ticks in [4, 7, 20, 160] {
@@ -382,7 +382,7 @@ fn the_time_of_wrong_ticks_is_the_same_at_every_tick_rate() {
 
 /// An amplifier that turns on may lag, but not overshoot.
 #[test]
-fn a_voltage_above_what_is_driven_is_wrong_while_the_amplifier_turns_on() {
+fn a_voltage_above_the_drive_is_wrong_while_the_amplifier_turns_on() {
     let mut check = MonitorCheck::new(&BOARD);
     check.set_enabled(true, 0);
     assert_eq!(ticks_to_fault(&mut check, 20.0, 60.0), Some(16));

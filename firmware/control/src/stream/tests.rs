@@ -82,7 +82,7 @@ fn reference(sample_hz: u32, ticks: u32) -> f64 {
 proptest! {
     /// The player interpolates linearly between samples, at any sample rate and across the wrap of positions.
     #[test]
-    fn a_steady_stream_is_straight_lines_between_its_samples(sample_hz in 200..=TICK_HZ, before_wrap in 0..3000_u32) {
+    fn a_steady_stream_is_interpolated_linearly(sample_hz in 200..=TICK_HZ, before_wrap in 0..3000_u32) {
         let buffer = buffer_before_wrap(before_wrap);
         let mut ends = Ends::started(&buffer, sample_hz, 300);
         let (mut sent, mut played) = (0, 0);
@@ -96,8 +96,8 @@ proptest! {
             }
             let now = ends.advance();
             if ends.player.phase == Phase::Playing {
-                // The first tick takes the first sample, the second takes the one behind it, the third is on the way
-                // there.
+                // The first tick takes the first sample, the second takes the next one, and the third is between
+                // them.
                 let expected = reference(sample_hz, played.max(1) - 1);
                 // A step is 2^-31 of a sample too short at most, 4,000 times.
                 let error = f64::from(now.value) - expected;
@@ -112,7 +112,7 @@ proptest! {
 
     /// Frames that come twice or in another order play as if they had come once and in order.
     #[test]
-    fn repeats_and_another_order_do_no_harm(
+    fn repeats_and_reordering_do_no_harm(
         order in Just((0..11_u32).collect::<Vec<_>>()).prop_shuffle(),
         again in prop::collection::vec(0..11_u32, 0..8),
         sample_hz in 2_000..=TICK_HZ,
@@ -131,8 +131,8 @@ proptest! {
         prop_assert_eq!(play(&mixed), play(&in_order));
     }
 
-    /// Under any sequence of calls: values and weights stay within bounds, weights never jump but to zero by `stop`,
-    /// and a stream never plays a sample of another.
+    /// Under any sequence of calls, values and weights stay within bounds, weights jump only to zero by `stop`, and a
+    /// stream never plays a sample of another.
     #[test]
     fn any_order_of_calls_is_safe_and_never_stale(
         calls in prop::collection::vec((0..12_u8, any::<u32>(), 0..120_u32), 1..120),
@@ -158,7 +158,7 @@ proptest! {
                     prop_assert!((0.0..=1.0).contains(&now.value) && (0.0..=1.0).contains(&now.weight), "{:?}", now);
                     let step = (now.weight - before.weight).abs();
                     prop_assert!(step <= 1.01 / FADE_TICKS as f32, "{:?} {:?}", before, now);
-                    // Once there was nothing of it, it is this stream's.
+                    // After it has faded out, it belongs to this stream.
                     if now.weight == 0.0 { shown = Some(stream); }
                     if shown == Some(stream) && now.weight > 0.0 {
                         prop_assert_eq!((now.value * 65_535.0).round() as u16, 100 * stream);
@@ -174,14 +174,14 @@ proptest! {
 }
 
 #[test]
-fn a_host_that_pauses_is_one_underrun_that_fades_and_goes_on_where_it_stopped() {
+fn a_pause_of_the_host_is_one_underrun_that_fades_and_resumes() {
     let buffer = StreamBuffer::new();
     let mut ends = Ends::started(&buffer, TICK_HZ, 500);
     ends.take(0, &samples(0, 500));
     let played = ends.run(500);
     assert_eq!(played[499].weight.to_bits(), 1.0_f32.to_bits());
     let last = f32::from(sample(499)) * VALUE_PER_SAMPLE;
-    // Sample 499 is reached, then there is nothing to go on to.
+    // Sample 499 is the last one that has arrived.
     let dry = ends.run(1_000);
     assert_eq!(ends.player.counts(), (1, 0));
     assert!(ends.player.is_dry());
@@ -208,7 +208,7 @@ fn a_host_that_pauses_is_one_underrun_that_fades_and_goes_on_where_it_stopped() 
 }
 
 #[test]
-fn a_gap_is_counted_once_and_time_goes_on_over_it() {
+fn a_gap_is_counted_once_and_does_not_stop_time() {
     let buffer = StreamBuffer::new();
     let mut ends = Ends::started(&buffer, TICK_HZ, 800);
     ends.take(0, &samples(0, 450));
@@ -239,11 +239,11 @@ fn the_end_is_no_underrun_and_needs_no_start_level() {
         let rest: Vec<StreamSample> = (0..1_000)
             .map(|_| {
                 let now = ends.advance();
-                assert!(!ends.player.is_dry(), "what ends does not run dry");
+                assert!(!ends.player.is_dry(), "a stream that ends does not run dry");
                 now
             })
             .collect();
-        assert!(rest.iter().any(|now| now.weight > 0.0), "what was there is played");
+        assert!(rest.iter().any(|now| now.weight > 0.0), "samples that arrived are played");
         assert_eq!(rest.last().map(|now| now.weight.to_bits()), Some(0));
         assert_eq!((ends.player.phase, ends.player.counts()), (Phase::Over, (0, 0)));
         assert_eq!(ends.intake.progress(), None);
@@ -270,7 +270,7 @@ fn samples_beyond_the_buffer_or_already_played_are_dropped() {
 }
 
 #[test]
-fn another_stream_is_heard_from_its_first_sample_and_never_before() {
+fn another_stream_plays_from_its_first_sample_and_not_before() {
     let buffer = StreamBuffer::new();
     let mut ends = Ends::started(&buffer, TICK_HZ, 100);
     ends.take(0, &samples(0, 600));
@@ -278,7 +278,7 @@ fn another_stream_is_heard_from_its_first_sample_and_never_before() {
     ends.end();
     // The session is ahead: the ticker has not received the order for the new stream yet.
     let start = ends.intake.start(TICK_HZ, TICK_HZ, 50);
-    assert_eq!(ends.intake.progress(), Some((0, 1_024)), "what is left of the old one takes no room");
+    assert_eq!(ends.intake.progress(), Some((0, 1_024)), "the rest of the old stream takes no room");
     ends.take(0, &[7_000; 200]);
     let old = ends.run(150);
     let last = f32::from(sample(599)) * VALUE_PER_SAMPLE;
@@ -343,7 +343,7 @@ fn holes_do_not_count_towards_the_start_level() {
 
 /// Skipped holes no longer count when the stream waits again.
 #[test]
-fn holes_that_were_played_over_do_not_delay_the_stream_again() {
+fn skipped_holes_do_not_delay_the_stream_again() {
     let buffer = StreamBuffer::new();
     let mut ends = Ends::started(&buffer, 8_000, 90);
     ends.take(0, &samples(0, 90));

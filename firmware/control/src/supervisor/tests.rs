@@ -94,7 +94,7 @@ fn a_monitor_at_its_tolerance_or_not_a_number_is_wrong() {
 }
 
 #[test]
-fn three_right_ticks_make_up_for_a_wrong_one() {
+fn three_correct_ticks_compensate_a_wrong_one() {
     let mut supervisor = driving(0);
     assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, WRONG_TICKS - 1), None);
     assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 15), None);
@@ -102,7 +102,7 @@ fn three_right_ticks_make_up_for_a_wrong_one() {
 }
 
 #[test]
-fn right_ticks_do_not_count_beforehand() {
+fn correct_ticks_do_not_count_in_advance() {
     let mut supervisor = driving(0);
     assert_eq!(ticks_to_fault(&mut supervisor, 60.0, 0, 3), None);
     assert_eq!(ticks_to_fault(&mut supervisor, 0.0, 0, 10_000), None);
@@ -110,7 +110,7 @@ fn right_ticks_do_not_count_beforehand() {
 }
 
 #[test]
-fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
+fn the_detail_of_a_monitor_fault_is_the_reading_in_volts() {
     for (monitor_v, detail) in [(60.9, 60), (-60.9, -60_i32 as u32)] {
         let mut supervisor = driving(0);
         ticks_to_fault(&mut supervisor, monitor_v, 0, 100);
@@ -120,7 +120,7 @@ fn the_number_of_a_monitors_fault_is_what_it_read_in_volts() {
 
 /// Holds for a fault of any duration.
 #[test]
-fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
+fn a_cleared_monitor_fault_does_not_return_while_readings_are_correct() {
     let mut supervisor = driving(0);
     for _ in 0..400_000 {
         supervisor.check(&reading(60.0), DacCode::ZERO);
@@ -132,7 +132,7 @@ fn a_cleared_monitor_fault_stays_away_when_the_monitor_reads_right() {
 }
 
 #[test]
-fn a_cleared_monitor_fault_comes_again_when_its_cause_is_still_there() {
+fn a_cleared_monitor_fault_returns_while_its_cause_lasts() {
     let mut supervisor = driving(0);
     for _ in 0..1000 {
         supervisor.check(&reading(60.0), DacCode::ZERO);
@@ -143,7 +143,7 @@ fn a_cleared_monitor_fault_comes_again_when_its_cause_is_still_there() {
 }
 
 #[test]
-fn the_arm_switch_counts_only_while_it_has_to_be_held() {
+fn the_arm_switch_matters_only_while_it_has_to_be_held() {
     let let_go = Sense { arm_switch: false, ..Sense::default() };
     for (state, fault) in [
         (State::Disarmed, None),
@@ -182,7 +182,7 @@ fn a_ready_line_is_a_fault_at_its_second_low_sample_within_a_millisecond() {
 }
 
 #[test]
-fn an_amplifiers_fault_counts_in_every_state() {
+fn an_amplifier_fault_is_latched_in_every_state() {
     let faulty = Sense { amplifier_fault: true, ..reading(0.0) };
     for state in [State::Disarmed, State::Armed, State::Active] {
         let mut supervisor = in_state(state);
@@ -196,7 +196,7 @@ fn an_amplifiers_fault_counts_in_every_state() {
 
 /// Every order in every state: an order that is not in this table changes nothing.
 #[test]
-fn orders_change_the_state_as_the_table_says() {
+fn orders_change_the_state_as_in_the_table() {
     let changes = [
         (Order::Arm, State::Disarmed, State::Armed),
         (Order::Play, State::Armed, State::Active),
@@ -228,7 +228,7 @@ fn ticks_to_silence(mut supervisor: Supervisor, heard_at_tick: u32, limit: u32) 
     })
 }
 
-/// The default is a quarter of a second. The timeout also holds across a wrap of the tick counter.
+/// The default is a quarter of a second. The timeout also holds when the tick counter wraps.
 #[test]
 fn a_silent_host_disarms_after_its_timeout() {
     for heard_at_tick in [0, 7, u32::MAX - 10_000, u32::MAX - 5, u32::MAX] {
@@ -243,7 +243,7 @@ fn a_silent_host_disarms_after_its_timeout() {
 
 /// The age of the last sign of life is an unsigned difference: one of more than 2^31 ticks is old, not in the future.
 #[test]
-fn a_host_that_was_heard_half_a_day_ago_is_silent() {
+fn a_host_without_a_sign_of_life_for_half_a_day_is_silent() {
     for age_ticks in [801, 1 << 31, (1 << 31) + 1, u32::MAX] {
         for state in [State::Armed, State::Active] {
             let mut supervisor = in_state(state);
@@ -266,7 +266,7 @@ fn the_host_timeout_applies_only_when_armed_or_active() {
 }
 
 #[test]
-fn a_host_that_arms_again_is_not_silent_any_more() {
+fn a_host_that_arms_again_is_no_longer_silent() {
     let mut supervisor = in_state(State::Armed);
     supervisor.expire(10_001);
     assert!(supervisor.host_silent());
@@ -279,7 +279,7 @@ fn a_host_that_arms_again_is_not_silent_any_more() {
 
 /// A switch that is held all the time, or stuck, arms nothing.
 #[test]
-fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
+fn arming_requires_a_switch_opened_since_the_reset_or_the_last_disarming() {
     let armed = |supervisor: &mut Supervisor, now_tick| {
         supervisor.check(&reading(0.0), DacCode::ZERO);
         supervisor.apply(&Order::Arm, now_tick);
@@ -304,7 +304,7 @@ fn arming_takes_a_switch_that_was_open_since_the_reset_or_the_last_disarming() {
 proptest! {
     /// A fault is left only by clearing it, and only an order leads beyond Disarmed.
     #[test]
-    fn only_orders_lead_to_a_state_that_drives(
+    fn only_orders_lead_to_a_driving_state(
         inputs in proptest::collection::vec((any::<bool>(), any::<bool>(), -300.0_f32..300.0, any::<i16>()), 1..200),
     ) {
         let mut supervisor = in_state(State::Disarmed);

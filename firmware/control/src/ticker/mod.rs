@@ -40,14 +40,14 @@ use crate::stream::StreamBuffer;
 use crate::supervisor::{self, Supervisor};
 use crate::{Active, Board, Ceilings, Drive, Sense, Track};
 
-/// Turns the finger's track into voltage, one tick at a time. Its supervisor decides whether the output is enabled.
+/// Turns the finger's track into voltage, one tick at a time.
 pub struct Ticker<'a> {
     timing: Timing,
     ceilings: Ceilings,
     /// Whether the current scene's coefficients were above the ceilings.
     is_clamped: bool,
     tick: u32,
-    /// Can stop the output.
+    /// Decides whether the output is enabled.
     supervisor: Supervisor,
     finger: Finger,
     /// Whether the finger was lifted since the last tick, even if another has touched the screen since.
@@ -146,9 +146,9 @@ impl<'a> Ticker<'a> {
         self.arm_switch = sense.arm_switch;
 
         // Return if anything stops the output: a fault (amplifier, monitor, arm switch, or raised by the board), a
-        // state other than Active (Stop, Disarm, host timeout), no track (lift, expiry), no scene. The supervisor and
-        // the finger come first, so that their findings stop the output in this tick. A lift is taken in any state, so
-        // that none is left for a later play.
+        // state other than Active (Stop, Disarm, host timeout), no track (lift, expiry), no scene. Supervisor and
+        // finger are updated first, so that they stop the output in this tick. A lift is cleared in every state, so
+        // that it does not affect a later play.
         let driven_code = self.dac_code;
         self.supervisor.check(sense, driven_code);
         self.supervisor.expire(self.tick);

@@ -84,7 +84,7 @@ impl<'a> Ticker<'a> {
     }
 
     /// Latches a hard fault detected by the board: the output is zero from the next tick on. A fault that is already
-    /// latched stays reported, since it came first.
+    /// latched remains the reported one.
     #[inline]
     pub fn raise(&mut self, fault: Fault, detail: u32) {
         if fault == Fault::Deadline {

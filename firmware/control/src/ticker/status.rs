@@ -14,9 +14,8 @@ impl Ticker<'_> {
         self.supervisor.state()
     }
 
-    /// Whether the arm switch must be released, and then pressed, before the board can be armed. A board without a
-    /// person at a switch, such as a simulated one, holds the switch whenever this is `false`, so that only the host
-    /// decides.
+    /// Whether the arm switch must be released before the board can be armed. A board without a person at the switch,
+    /// such as a simulated one, holds the switch whenever this is `false`, so that only the host decides.
     pub fn waits_for_release(&self) -> bool {
         self.supervisor.state() == State::Disarmed && !self.supervisor.switch_was_released()
     }

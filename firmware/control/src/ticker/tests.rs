@@ -138,7 +138,7 @@ fn each_coefficient_above_its_ceiling_is_lowered() {
 }
 
 #[test]
-fn an_unloaded_scene_leaves_nothing() {
+fn unloading_a_scene_leaves_nothing_behind() {
     let carrier = CarrierTiming::new(Waveform::Square, 4, 100.0, DacCode::MAX);
     let mut unloaded = active(carrier, 1.0, 50.0, 100);
     unloaded.unload();

@@ -18,9 +18,9 @@ parameters! {
     pub struct Bitmap {
         /// CRC-32 of the samples: the bitmap's name in the pool.
         crc32: u32 = 52,
-        /// The corner of the first sample, m.
+        /// x of the first sample's corner, m.
         x_m: f32 = 24 in range::BITMAP_PLACE_M,
-        /// The corner of the first sample, m.
+        /// y of the first sample's corner, m.
         y_m: f32 = 28 in range::BITMAP_PLACE_M,
         /// Spacing of samples in a row, m.
         pitch_m: f32 = 32 in range::PITCH_M,

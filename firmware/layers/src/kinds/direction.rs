@@ -68,7 +68,7 @@ impl Evaluate for DirectionCoefficients {
         let speed_m_per_s = square_root(x * x + y * y);
         let along_m_per_s = self.axis_x * x + self.axis_y * y;
         let part = along_m_per_s / if speed_m_per_s > FADE_M_PER_S { speed_m_per_s } else { FADE_M_PER_S };
-        // Between both frictions even if the squares overflow, or the velocity is NaN.
+        // Keeps the friction between both, even if the squares overflow or the velocity is NaN.
         let part = if part > -1.0 { if part < 1.0 { part } else { 1.0 } } else { -1.0 };
         self.middle_n + self.swing_n * part
     }
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn no_velocity_leads_out_of_both_frictions() {
+    fn every_velocity_stays_between_both_frictions() {
         let extremes = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, f32::MIN, 2e19, 1e15, 1e-20, 1e-45, -0.0];
         for angle_turns in [0.0, 0.125, 0.25, -1.0] {
             for velocity in extremes.into_iter().flat_map(|x| extremes.map(|y| [x, y])) {
@@ -128,7 +128,7 @@ mod tests {
     proptest! {
         /// Within 2e-6 of the difference of both, from the formula in `f64`.
         #[test]
-        fn the_friction_is_that_of_the_formula(
+        fn the_friction_matches_the_formula(
             angle_turns in -1.0_f32..=1.0,
             heading_turns in 0.0_f64..1.0,
             exponent in -6.0_f64..2.0,

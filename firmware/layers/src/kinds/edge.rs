@@ -17,9 +17,9 @@ use crate::region::ActiveRegion;
 parameters! {
     /// A line with a ridge or a well along it, and a click when the finger crosses it.
     pub struct Edge {
-        /// A place on the line, m.
+        /// x of a point on the line, m.
         x_m: f32 = 24 in range::SHAPE_PLACE_M,
-        /// A place on the line, m.
+        /// y of the same point, m.
         y_m: f32 = 28 in range::SHAPE_PLACE_M,
         /// Direction across the line, from x towards y, in turns.
         angle_turns: f32 = 32 in range::ANGLE_TURNS,

@@ -72,7 +72,7 @@ pub(crate) struct GratingCoefficients {
 impl Evaluate for GratingCoefficients {
     #[inline]
     fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
-        // First, since a call keeps no float in a register.
+        // Computed first, since floats do not stay in registers across the call.
         let phase_turns = self.phase.at(context.inputs.tick);
         let [x_m, y_m] = context.inputs.place_m;
         let turns = x_m * self.cycles_per_m_x + y_m * self.cycles_per_m_y + phase_turns;

@@ -18,11 +18,11 @@ parameters! {
     /// Rings: `trough + (crest - trough) w(k d - drift t)` at the distance `d` from the centre and the time `t` since
     /// power-on, with `w` between 0 and 1 and a period of one turn.
     pub struct Rings {
-        /// Shape of the rings, from the middle outwards.
+        /// Shape of the rings, from the centre outwards.
         wave: Wave = 44,
-        /// The middle, m.
+        /// x of the centre, m.
         x_m: f32 = 24 in range::SHAPE_PLACE_M,
-        /// The middle, m.
+        /// y of the centre, m.
         y_m: f32 = 28 in range::SHAPE_PLACE_M,
         /// Rings per metre, outwards.
         cycles_per_m: f32 = 32 in range::CYCLES_PER_M,
@@ -80,7 +80,7 @@ pub(crate) struct RingsCoefficients {
 impl Evaluate for RingsCoefficients {
     #[inline]
     fn electric_friction_n(&self, _region: &ActiveRegion, context: &mut Context) -> f32 {
-        // First, since a call keeps no float in a register.
+        // Computed first, since floats do not stay in registers across the call.
         let phase_turns = self.phase.at(context.inputs.tick);
         let [x_m, y_m] = context.inputs.place_m;
         let (x_m, y_m) = (x_m - self.x_m, y_m - self.y_m);

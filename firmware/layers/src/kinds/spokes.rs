@@ -23,9 +23,9 @@ parameters! {
     pub struct Spokes {
         /// Shape of the spokes, from x towards y.
         wave: Wave = 44,
-        /// The middle, m.
+        /// x of the centre, m.
         x_m: f32 = 24 in range::SHAPE_PLACE_M,
-        /// The middle, m.
+        /// y of the centre, m.
         y_m: f32 = 28 in range::SHAPE_PLACE_M,
         /// Phase, in turns of the wave.
         phase_turns: f32 = 32 in range::PHASE_TURNS,
@@ -113,7 +113,7 @@ mod tests {
         layers.electric_friction_n(&inputs, &pool, &mut Clicks::NONE.clone())
     }
 
-    /// To the left of the middle the angle jumps by a turn, and the friction does not.
+    /// To the left of the centre the angle jumps by a turn, but the friction does not.
     #[test]
     fn spokes_close_to_a_ring() {
         for number in [1, 7, 24, 255] {
@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// `PROTOCOL.md`: nothing is narrower than 1 mm.
+    /// Without spokes, no width is below 1 mm, so nothing fades.
     #[test]
     fn no_spokes_are_the_wave_at_its_phase_everywhere() {
         for right_m in [0.0, 1e-5, 1e-3, 0.03] {

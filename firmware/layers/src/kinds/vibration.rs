@@ -23,7 +23,7 @@ parameters! {
         beat: Beat = 3,
         /// Frequency, Hz.
         frequency_hz: f32 = 24 in range::FREQUENCY_HZ,
-        /// Electric friction between bursts, and the smallest within, N.
+        /// Smallest electric friction, and that between bursts, N.
         low_n: f32 = 28 in range::FRICTION_N,
         /// Largest electric friction, N.
         high_n: f32 = 32 in range::FRICTION_N,
@@ -126,7 +126,8 @@ pub(crate) struct VibrationCoefficients {
     burst: Option<BurstCoefficients>,
 }
 
-/// The envelope: the smaller of `offset + per_tick` times the ticks since it began and until it ends, and 1.
+/// The envelope: `offset + per_tick n`, at most 1, with the smaller number `n` of ticks since the burst's start and
+/// until its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BurstCoefficients {
     period_ticks: NonZeroU32,

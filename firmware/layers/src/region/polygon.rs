@@ -3,11 +3,10 @@
 use crate::context::Context;
 use crate::point::points_of;
 
-/// The even-odd rule: whether a line towards larger x crosses the edges an odd number of times.
+/// The even-odd rule: whether a ray towards larger x crosses the edges an odd number of times.
 ///
 /// The position of an edge is computed from its upper to its lower end, regardless of their order, so that two polygons
 /// with a common edge agree on it to the bit.
-// Separate code, like the evaluation of a kind.
 #[inline]
 pub(super) fn contains(first: u8, count: u8, context: &Context) -> bool {
     let vertices = points_of(context.tables.points(), first, count);

@@ -41,7 +41,7 @@ pub struct NextScene {
 
 impl NextScene {
     /// Memory without a scene.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not on the stack")]
     pub const fn new() -> Self {
         Self { staging: Staging::new(), coefficients: Active::new() }
     }
