@@ -14,7 +14,7 @@ use crate::{Active, Track};
 #[repr(u32)]
 pub enum Order<'a> {
     /// The host has sent a valid frame: restarts the host timeout.
-    HostHeard,
+    SignOfLife,
     /// The finger follows this track from now on.
     Track(Track),
     /// The finger has been lifted.
@@ -57,12 +57,12 @@ impl Order<'_> {
     /// Whether the order restarts the host timeout because it follows directly from a frame. Other orders may have
     /// waited, such as a play that was sent during a commit.
     pub fn is_sign_of_life(&self) -> bool {
-        matches!(self, Self::HostHeard | Self::Arm | Self::Disarm | Self::Stop | Self::ClearFault)
+        matches!(self, Self::SignOfLife | Self::Arm | Self::Disarm | Self::Stop | Self::ClearFault)
     }
 
     /// Whether [`Status::orders_applied`] counts this order.
     pub(crate) fn is_counted(&self) -> bool {
-        !matches!(self, Self::HostHeard | Self::Track(_) | Self::Lift)
+        !matches!(self, Self::SignOfLife | Self::Track(_) | Self::Lift)
     }
 }
 
@@ -73,7 +73,7 @@ pub struct Status {
     pub telemetry: Telemetry,
     /// The last hard fault and its detail number. The fault is latched while the state is Faulted.
     pub fault: Option<(Fault, u32)>,
-    /// Orders applied since power-on, modulo 2^32. [`Order::HostHeard`], tracks and lifts are not counted.
+    /// Orders applied since power-on, modulo 2^32. [`Order::SignOfLife`], tracks and lifts are not counted.
     pub orders_applied: u32,
     /// Whether the arm switch was held at the last tick, and pressed since the reset or the last disarming.
     pub arm_switch: bool,

@@ -15,7 +15,7 @@ const HOST_TIMEOUT_DEFAULT_S: f32 = 0.25;
 pub(crate) struct Supervisor {
     state: State,
     fault: Option<(Fault, u32)>,
-    host_heard_at_tick: u32,
+    sign_of_life_at_tick: u32,
     host_timeout_ticks: u32,
     host_silent: bool,
     /// Whether the arm switch was open in some tick since the reset or the last disarming, so that a switch that is
@@ -29,7 +29,7 @@ impl Supervisor {
         Self {
             state: State::Disarmed,
             fault: board.reset_fault,
-            host_heard_at_tick: 0,
+            sign_of_life_at_tick: 0,
             host_timeout_ticks: host_timeout_default_ticks(board),
             host_silent: false,
             switch_was_released: false,
@@ -53,7 +53,7 @@ impl Supervisor {
     /// Applies orders that change the state. An order not allowed in the current state is ignored.
     pub(crate) fn apply(&mut self, order: &Order, now_tick: u32) {
         if order.is_sign_of_life() {
-            self.host_heard_at_tick = now_tick;
+            self.sign_of_life_at_tick = now_tick;
         }
         match (order, self.state) {
             // Ignored until the switch was released: the host may have sent it before the board disarmed.
@@ -136,7 +136,7 @@ impl Supervisor {
     /// Disarms an armed or active board whose host timeout has passed. Called at every tick.
     #[inline]
     pub(crate) fn expire(&mut self, now_tick: u32) {
-        let is_host_silent = now_tick.wrapping_sub(self.host_heard_at_tick) > self.host_timeout_ticks;
+        let is_host_silent = now_tick.wrapping_sub(self.sign_of_life_at_tick) > self.host_timeout_ticks;
         if is_host_silent && matches!(self.state, State::Armed | State::Active) {
             self.disarm();
             self.host_silent = true;

@@ -45,17 +45,17 @@ impl<'a> Commands<'a> {
         match payload {
             Ok(Payload::HelloRequest { .. }) => self.handle_hello(status),
             Ok(Payload::Request(request)) => {
-                self.states.host_heard();
+                self.states.note_sign_of_life();
                 self.take_request(request, status);
             }
             Ok(Payload::Chunk { number, bytes }) => {
-                self.states.host_heard();
+                self.states.note_sign_of_life();
                 if let Some(next_chunk) = self.scenes.take_chunk(number, bytes) {
                     self.link.report_progress(next_chunk);
                 }
             }
             Ok(Payload::Samples { first_index, samples }) => {
-                self.states.host_heard();
+                self.states.note_sign_of_life();
                 // Samples after a `StartStream` that waits for a commit belong to a stream that has not begun.
                 if cfg!(feature = "stream") && !self.link.has_waiting_stream() {
                     self.scenes.stream.take(first_index, samples);
@@ -64,7 +64,7 @@ impl<'a> Commands<'a> {
             }
             // A request with an unknown command is still answered under its sequence number.
             Err(ParseError::UnknownCommand { sequence }) => {
-                self.states.host_heard();
+                self.states.note_sign_of_life();
                 self.link.answer(sequence, Err(Refusal::UnknownCommand), self.states.state());
             }
             // Ignore frames that only a board sends, and invalid frames.
@@ -128,7 +128,7 @@ impl<'a> Commands<'a> {
                 Err(Refusal::BitmapPoolFull { len: u32::from(width) * u32::from(height), free: 0 })
             }
             Command::UploadEnd => scenes.end_upload(),
-            // `carry_out` handles a commit before.
+            // Handled by `carry_out`.
             Command::Commit { .. } => Err(Refusal::Busy),
             Command::Subscribe { period_ticks } if cfg!(feature = "telemetry") => {
                 link.subscribe(period_ticks, board.tick_hz)
@@ -157,7 +157,7 @@ impl<'a> Commands<'a> {
             }
             Command::LiftFinger { finger } => Ok(motion.lift(finger, scenes.leader(), status)),
             Command::TickTimes if cfg!(feature = "telemetry") => Ok(Accepted::TickTimes(self.tick_times(status))),
-            // Their features are disabled.
+            // The features of these commands are disabled.
             Command::Subscribe { .. } | Command::StartStream { .. } | Command::TickTimes => {
                 Err(Refusal::UnknownCommand)
             }
@@ -248,8 +248,8 @@ impl<'a> Commands<'a> {
     }
 }
 
-/// Whether a request may be executed during an earlier commit, or while requests wait for one. Its effects are
-/// independent of theirs, except that Stop and Disarm end waiting requests (see [`Commands::take_request`]).
+/// Whether a request may be executed during a commit, or while earlier requests wait for one. Its effects are
+/// independent of theirs, except that Stop and Disarm refuse waiting requests (see [`Commands::take_request`]).
 fn may_overtake_a_commit(command: Command) -> bool {
     matches!(
         command,

@@ -47,10 +47,10 @@
 //!
 //! # Cargo features
 //!
-//! Every Cargo feature is an ability of scenes or hosts, and all are enabled by default: the kinds of layers (`edge`
-//! includes buttons), `polygon` regions, the `sine-carrier` and `telemetry`. An image without a feature is smaller,
-//! clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses, all blends
-//! and the square carrier are always included.
+//! Every Cargo feature enables a part of scenes or of the protocol, and all are enabled by default: the kinds of layers
+//! (`edge` includes buttons), `polygon` regions, the `sine-carrier` and `telemetry`. An image without a feature is
+//! smaller, clears its feature bit in the hello, and refuses what needs it. Constant layers, rectangles, ellipses, all
+//! blends and the square carrier are always included.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

@@ -81,7 +81,7 @@ impl TickEnds {
         if let Some(order) = self.orders.dequeue()
             && let Some(spare) = ticker.apply(order)
         {
-            // Cannot fail: there are two of them, and room for both.
+            // Cannot fail: there are two buffers, and room for both.
             let _ = self.spares.enqueue(spare);
         }
     }

@@ -35,7 +35,7 @@ fn count_orders(board: &mut TestBoard, bytes: &[u8]) -> (bool, usize) {
     let (mut heard, mut others) = (false, 0);
     while let Some(order) = board.session.next_order() {
         match order {
-            Order::HostHeard => heard = true,
+            Order::SignOfLife => heard = true,
             _ => others += 1,
         }
     }
@@ -90,7 +90,7 @@ fn a_frame_that_begins_beyond_the_credit_is_discarded_whole() {
 
 /// The board discards a bad frame that runs beyond the credit up to its zero byte, and no further.
 #[test]
-fn a_good_frame_behind_a_bad_one_that_ran_beyond_the_credit_is_taken() {
+fn a_good_frame_after_a_bad_one_beyond_the_credit_is_taken() {
     let mut board = playing();
     count_orders(&mut board, &window_of(Command::Ping));
     assert_eq!(count_orders(&mut board, &[0x55; 40]), (false, 0));
@@ -129,7 +129,7 @@ fn noise_does_not_use_credit_up() {
 /// The largest number of outstanding answers, each a refusal with all its numbers, to a host that does not read.
 #[cfg(feature = "telemetry")]
 #[test]
-fn an_answer_always_has_its_place_and_telemetry_is_left_out() {
+fn answers_always_have_room_and_telemetry_is_skipped() {
     let mut board = TestBoard::of(Board { touch_from_host: true, ..Board::SIMULATOR });
     board.hello();
     board.command(Command::Subscribe { period_ticks: 40 }).unwrap();

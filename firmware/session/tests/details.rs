@@ -28,20 +28,20 @@ fn state_with_only(payload: &[u8]) -> State {
 }
 
 #[test]
-fn what_is_not_understood_is_dropped_or_refused_and_costs_credit() {
+fn unreadable_frames_are_dropped_or_refused_and_cost_credit() {
     let mut board = TestBoard::connected();
     let mut sent = 0;
-    // A sequence number of four bytes, a request of nothing, an unknown kind, and a message of a board.
+    // A sequence number of four bytes, an empty request, an unknown kind, and a message of a board.
     for payload in [&[2, 0xff, 0xff, 0xff, 0x01][..], &[2], &[0x42, 1, 2], &[3, 0, 0, 0, 0, 0]] {
         sent += send(&mut board, payload);
     }
     assert_eq!(board.answers(), []);
-    // An unknown command, and a known one with a byte behind it.
+    // An unknown command, and a known one followed by an extra byte.
     sent += send(&mut board, &[2, 7, 99]);
     sent += send(&mut board, &[2, 8, 0, 1]);
     let unknown = Err(Refusal::UnknownCommand);
     assert_eq!(board.answers(), [(7, unknown), (8, unknown)]);
-    // A ping with sequence 5, whose varint has two bytes more than it needs.
+    // A ping with sequence 5, whose varint is two bytes longer than necessary.
     sent += send(&mut board, &[2, 0x85, 0x80, 0x00, 0]);
     let FromBoard::Answer(answer) = board.messages.remove(0) else { panic!("no answer") };
     assert_eq!((answer.sequence, answer.outcome), (5, Ok(Accepted::Done)));
@@ -49,7 +49,7 @@ fn what_is_not_understood_is_dropped_or_refused_and_costs_credit() {
 }
 
 #[test]
-fn only_what_is_understood_is_a_sign_of_life() {
+fn only_readable_frames_are_signs_of_life() {
     for payload in [&[2, 0xff, 0xff, 0xff, 0x01][..], &[0x42, 1, 2], &[3, 0, 0, 0, 0, 0]] {
         assert_eq!(state_with_only(payload), State::Disarmed, "{payload:?}");
     }
@@ -80,7 +80,7 @@ fn the_first_refusal_of_several() {
 }
 
 #[test]
-fn an_upload_of_nothing_ends_at_once_and_is_no_scene() {
+fn an_empty_upload_ends_at_once_and_is_no_scene() {
     let mut board = TestBoard::connected();
     board.command(Command::UploadScene { len: 0, crc32: 0 }).unwrap();
     assert_eq!(board.command(Command::UploadEnd), Ok(Accepted::Done));

@@ -7,7 +7,7 @@ use frixel_wire::hello::feature;
 use frixel_wire::message::{Command, ConfigRefusal, Refusal};
 
 #[test]
-fn the_hello_tells_what_there_is() {
+fn the_hello_lists_the_enabled_features() {
     let hello = TestBoard::new().hello();
     let of_the_session = [
         (cfg!(feature = "sine-carrier"), feature::SINE_CARRIER),

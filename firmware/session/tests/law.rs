@@ -1,7 +1,7 @@
 //! A finger's empirical law is played as stated, and an invalid law is refused.
 #![cfg(feature = "empirical")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
-#![allow(clippy::float_cmp, reason = "what has to be exact is tested as exact")]
+#![allow(clippy::float_cmp, reason = "exact results are compared exactly")]
 
 use crate::support;
 
@@ -74,16 +74,16 @@ fn field(header: &Header) -> (ConfigField, f32, f32, f32) {
 }
 
 #[test]
-fn what_is_no_law_is_refused() {
+fn invalid_laws_are_refused() {
     assert_eq!(refused(&scene(&header(2.0, &POINTS), &[constant_of(0.01)])), None);
-    // Never above the highest voltage that was measured.
+    // The voltage never exceeds the largest measured one.
     let beyond = Header { voltage_max_v_rms: 150.1, ..header(2.0, &POINTS) };
     assert_eq!(field(&beyond), (ConfigField::VoltageRms, 150.1, 1.0, 150.0));
     for exponent in [0.4, 12.1, f32::NAN, f32::INFINITY, -2.0, f32::from_bits(1)] {
         let (of, found, min, max) = field(&header(exponent, &POINTS));
         assert_eq!((of, found.to_bits(), min, max), (ConfigField::LawExponent, exponent.to_bits(), 0.5, 12.0));
     }
-    // Voltages, and then frictions, rise from above zero.
+    // First voltages, then frictions, must rise from above zero.
     let least = f32::from_bits(1);
     for (points, expected) in [
         ([(50.0, 0.03), (150.0, 0.02)], (ConfigField::LawFriction, 0.02, 0.03)),
@@ -103,12 +103,12 @@ fn what_is_no_law_is_refused() {
         assert_eq!((of, found.to_bits()), (expected_field, expected_found.to_bits()), "{points:?}");
         assert_eq!((min, max), (above.next_up(), f32::MAX), "{points:?}");
     }
-    // Nothing lies above a voltage that is not a number or infinite.
+    // No voltage is above NaN or infinity.
     for last_v_rms in [f32::NAN, f32::INFINITY] {
         let (of, found, ..) = field(&header(2.0, &[(50.0, 0.03), (last_v_rms, 0.09)]));
         assert!(matches!(of, ConfigField::VoltageRms | ConfigField::LawPoint), "{of:?} {found}");
     }
-    // Up to a smallest number, friction grows with a far too small power.
+    // From a tiny first point, friction grows with far too small a power.
     let (of, found, ..) = field(&header(2.0, &[(least, least), (150.0, 0.09)]));
     assert!(of == ConfigField::LawExponent && !(0.5..=12.0).contains(&found), "{of:?} {found}");
     let (of, found, ..) = field(&header(2.0, &[(50.0, 0.001), (55.0, 0.03), (150.0, 0.06)]));
@@ -129,7 +129,7 @@ fn what_is_no_law_is_refused() {
 }
 
 #[test]
-fn bytes_that_are_no_law_are_refused() {
+fn malformed_laws_are_refused() {
     let good = scene(&header(2.0, &POINTS), &[]);
     assert_eq!((good.len(), refused(&good)), (56 + 3 * 8, None));
     for offset in [17, 18, 19, 28, 31] {

@@ -23,7 +23,7 @@ fn a_layer_is_changed_only_while_it_plays() {
 }
 
 #[test]
-fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number() {
+fn a_missing_layer_and_a_gain_out_of_range_are_refused_by_number() {
     let mut board = TestBoard::new();
     let layer = constant(0.01);
     let both = scene(&HEADER, &[layer, Record { blend: Blend::Add, ..layer }]);
@@ -55,7 +55,7 @@ fn a_layer_that_is_not_there_and_a_gain_beyond_its_range_are_refused_by_number()
 }
 
 #[test]
-fn a_layers_number_is_of_the_scene_that_was_committed_last() {
+fn layer_numbers_refer_to_the_committed_scene() {
     let mut board = TestBoard::new();
     board.play(&constant_scene(0.01));
     let layer = constant(0.002);
@@ -64,14 +64,14 @@ fn a_layers_number_is_of_the_scene_that_was_committed_last() {
     assert_eq!(board.command(last), Err(Refusal::NoSuchLayer { layer: 2, layers: 1 }), "uploaded, not committed");
     board.load(&scene(&HEADER, &[layer, layer, layer])).unwrap();
     assert_eq!(board.command(last), Ok(Accepted::Done));
-    // An upload that has begun takes the bytes of the scene, not the scene.
+    // A new upload overwrites the bytes of the committed scene, which still plays.
     board.command(Command::UploadScene { len: 112, crc32: 7 }).unwrap();
     assert_eq!(board.command(last), Ok(Accepted::Done));
     assert_eq!(board.session.scene_header(), Some(&HEADER));
 }
 
 #[test]
-fn a_scene_that_says_that_its_layers_stay_refuses_to_change_them() {
+fn a_scene_with_fixed_layers_refuses_changes() {
     let mut board = TestBoard::new();
     board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
     assert_eq!(board.command(HALF), Err(Refusal::LayersFixed));
@@ -85,7 +85,7 @@ mod streams {
     use frixel_wire::hello::feature;
 
     #[test]
-    fn a_board_without_a_buffer_takes_no_stream_and_says_so() {
+    fn a_board_without_a_stream_buffer_refuses_streams() {
         let mut board = TestBoard::without_stream(Board::SIMULATOR);
         assert_eq!(board.hello().features & feature::STREAM, 0);
         board.play(&constant_scene(0.01));
@@ -95,7 +95,7 @@ mod streams {
     }
 
     #[test]
-    fn a_scene_without_a_stream_layer_takes_no_stream() {
+    fn a_scene_without_a_stream_layer_refuses_streams() {
         let mut board = TestBoard::new();
         assert_ne!(board.hello().features & feature::STREAM, 0);
         let start = Command::StartStream { sample_hz: 1_000, start_level: 1 };
@@ -108,7 +108,7 @@ mod streams {
 
 /// The host's touchscreen reports two fingers at a time; the committed scene determines which one is followed.
 #[test]
-fn the_scene_says_which_of_two_fingers_is_followed() {
+fn the_scene_selects_which_of_two_fingers_is_followed() {
     for (leader, second_leads) in [(Leader::First, false), (Leader::Latest, true)] {
         let board = Board { touch_from_host: true, ..Board::SIMULATOR };
         let mut board = TestBoard::of(board);

@@ -1,4 +1,4 @@
-//! The board's loader: its numbered refusals, and what any bytes make of it and the tick.
+//! The board's loader: its numbered refusals, and its behaviour and the tick's for arbitrary bytes.
 
 use crate::support::{HEADER, TestBoard, constant, scene_with_points};
 use frixel_layers::{Header, Record, Scene};
@@ -45,7 +45,7 @@ mod whole {
     fn nan_in_any_parameter_is_refused() {
         let parameters = |record: &Record| {
             let bytes = record.write();
-            // The bitmap's name and the noise's seed are not numbers, the points of a curve are judged below.
+            // The bitmap's name and the noise's seed are not `f32`; the points of a curve are tested below.
             let end = if matches!(record.layer, Layer::Edge(_)) { RECORD_LEN } else { 52 };
             let starts = if matches!(record.region, Region::Polygon { .. }) { 20 } else { 4 };
             (starts..end).step_by(4).filter(|at| bytes[*at..at + 4] != [0; 4]).collect::<Vec<_>>()
@@ -90,7 +90,7 @@ mod whole {
     fn side_tables_are_refused_by_what_they_hold() {
         let of = |layer, count: usize| {
             let mut board = TestBoard::connected();
-            // Side by side: one on another they would take too long.
+            // Side by side, since overlapping layers would be too costly.
             let beside = |number: usize| {
                 let (x_m, y_m) = (1e-3 + 7.5e-3 * (number % 16) as f32, 0.01 + 0.01 * (number / 16) as f32);
                 let region = Region::Rectangle { x_m, y_m, width_m: 4e-3, height_m: 4e-3 };
@@ -111,7 +111,7 @@ mod whole {
     }
 }
 
-/// A layer on a ground that asks for more than any voltage gives, as a scene with some of its bytes changed.
+/// A layer over a friction out of reach of any voltage, as a scene with some of its bytes changed.
 fn nearly() -> impl Strategy<Value = Vec<u8>> {
     let good = |record: Record, voltage_max_v_peak: f32| {
         let header = Header { voltage_max_v_peak, ..HEADER };
@@ -137,7 +137,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 192, ..ProptestConfig::default() })]
 
     #[test]
-    fn nearly_right_scenes_neither_panic_nor_drive_beyond_their_limits(scene in nearly()) {
+    fn nearly_valid_scenes_neither_panic_nor_drive_beyond_their_limits(scene in nearly()) {
         let mut board = TestBoard::connected();
         let _ = board.upload_bitmap(3, 2, &SAMPLES);
         if board.load(&scene).is_ok() {

@@ -36,7 +36,7 @@ fn nothing_is_driven_before_a_host_has_armed_and_played() {
 }
 
 #[test]
-fn stop_and_disarm_put_the_output_to_zero_at_the_next_tick() {
+fn stop_and_disarm_set_the_output_to_zero_at_the_next_tick() {
     for command in [Command::Stop, Command::Disarm] {
         let mut board = playing();
         board.command(command).unwrap();
@@ -97,7 +97,7 @@ fn assert_faults(board: &mut TestBoard, fault: Fault, within_ticks: u32) {
     assert!(driven[within_ticks as usize..].iter().all(|drive| *drive == OFF), "{fault:?}");
     assert_eq!(board.status().telemetry.state, State::Faulted);
     assert_eq!(board.status().fault.map(|(fault, _)| fault), Some(fault));
-    // The host is not silent, so that no flag is set, whatever flags the tick has.
+    // The host is not silent, so no flag is reported, whatever flags the tick has.
     let changed = FromBoard::StateChanged { state: State::Faulted, fault: Some(fault), flags: Flags(0) };
     assert!(board.messages.contains(&changed), "{:?}", board.messages);
     for command in [Command::Arm, Command::Play, Command::Stop, Command::Disarm] {
@@ -121,7 +121,7 @@ fn an_amplifier_fault_latches() {
 }
 
 #[test]
-fn a_switch_let_go_faults() {
+fn a_released_switch_faults() {
     let mut board = playing();
     board.sense.arm_switch = false;
     assert_faults(&mut board, Fault::ArmSwitch, 0);
@@ -183,7 +183,7 @@ fn a_touch_source_that_repeats_one_report_stops_the_output() {
 }
 
 #[test]
-fn a_touch_report_that_is_not_a_number_changes_nothing() {
+fn a_touch_report_of_nan_changes_nothing() {
     let mut board = playing();
     board.touch = Some(Touch::Down { x_m: f32::NAN, y_m: f32::INFINITY, age_ticks: 0 });
     assert!(board.tick().dac_code.bits() != 0);
@@ -234,7 +234,7 @@ fn a_new_scenes_voltage_limit_holds_while_the_standstill_ramp_begins() {
 }
 
 #[test]
-fn a_still_finger_is_ramped_away_and_comes_back_however_often_it_is_reported() {
+fn a_still_finger_is_ramped_down_and_up_again_at_any_report_rate() {
     for period_ticks in (1..=24).chain([40, 400, 667]) {
         let mut board = playing();
         let mut x_m = 0.03;
@@ -286,7 +286,7 @@ const SWITCHING_TICKS: u32 = 42;
 /// Ticks with a wrong monitor voltage after which the board faults.
 const WRONG_TICKS: u32 = 16;
 
-/// `frixel-control` tests the monitor's tolerance at zero, and its timing (`monitor`).
+/// The monitor's tolerance at zero and its timing are tested in `frixel-control` (`monitor`).
 #[test]
 fn an_output_that_is_not_at_zero_after_the_turn_off_time_is_a_fault() {
     for command in [Command::Stop, Command::Disarm] {

@@ -75,7 +75,7 @@ fn a_bitmap_with_a_wrong_byte_is_refused_and_forgotten() {
 
 #[cfg(feature = "bitmap")]
 #[test]
-fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
+fn the_pool_keeps_playing_bitmaps_and_evicts_them_when_nothing_plays() {
     let mut board = TestBoard::connected();
     let first = vec![1; 250 * 250];
     let second = vec![2; 250 * 250];
@@ -95,7 +95,7 @@ fn the_pool_keeps_what_plays_and_gives_way_when_nothing_does() {
 
 /// `frixel-layers` tests the ranges of all numbers of header and records.
 #[test]
-fn numbers_that_the_board_cannot_play_are_refused_by_name() {
+fn numbers_out_of_range_are_refused_by_name() {
     for (header, friction_n, expected) in [
         (Header { finger_radius_m: f32::NAN, ..HEADER }, 0.01, ConfigField::FingerRadius),
         (Header { carrier_hz: 5_000.0, ..HEADER }, 0.01, ConfigField::CurrentRms),
@@ -106,14 +106,14 @@ fn numbers_that_the_board_cannot_play_are_refused_by_name() {
     }
 }
 
-/// The bound for a person whom no coating protects, at each carrier frequency that the board can give: 68 kOhm allow
-/// 28.7 V peak at 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
+/// The touch bound for a person without a coating, at each carrier frequency of the board: 68 kOhm allow 28.7 V peak at
+/// 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
 #[test]
-fn a_peak_that_would_hurt_through_a_bridged_coating_is_refused_at_every_carrier() {
+fn a_peak_above_the_touch_bound_is_refused_at_every_carrier() {
     let limits = BoardLimits { series_resistance_ohm: 68e3, current_max_a_rms: 1.0, ..Board::SIMULATOR.limits };
     let mut board = TestBoard::of(Board { limits, ..Board::SIMULATOR });
     board.hello();
-    // The carrier that counts is the one of whole ticks: 4.4 kHz is played as 4 kHz, whose bound is lower.
+    // The bound is that of the carrier in whole ticks: 4.4 kHz is played as 4 kHz, whose bound is lower.
     for (carrier_hz, bound_v_peak) in
         [(125.0, 28.688), (250.0, 30.855), (1_000.0, 43.86), (4_400.0, 60.18), (5_000.0, 65.62)]
     {
@@ -164,7 +164,7 @@ fn bytes_that_are_not_a_scene_are_refused() {
 
 /// A scene with few points and many records is no longer, in bytes, than an accepted one with many points.
 #[test]
-fn a_scene_of_more_records_than_the_board_says_is_refused() {
+fn a_scene_with_more_records_than_the_boards_limit_is_refused() {
     let mut board = Board::SIMULATOR;
     board.limits.records_max = 2;
     let mut board = TestBoard::of(board);
@@ -192,9 +192,9 @@ fn answered(board: &mut TestBoard) -> Vec<u16> {
     board.answers().into_iter().map(|(sequence, _)| sequence).collect()
 }
 
-/// Messages that a host must be able to send at any time do not wait for an earlier commit.
+/// Signs of life, stops and disarms do not wait for a commit.
 #[test]
-fn a_commit_holds_up_no_sign_of_life_and_nothing_that_puts_the_output_to_zero() {
+fn a_commit_delays_no_sign_of_life_and_no_stop() {
     let mut board = TestBoard::new();
     board.play(&constant_scene(0.01));
     let next = constant_scene(0.015);
@@ -254,7 +254,7 @@ fn requests_that_depend_on_a_commit_are_carried_out_after_it_in_order() {
 }
 
 #[test]
-fn a_stop_or_disarm_refuses_the_requests_that_wait_for_a_commit() {
+fn a_stop_or_disarm_refuses_requests_that_wait_for_a_commit() {
     for last in [Command::Stop, Command::Disarm] {
         let scene = constant_scene(0.01);
         let mut board = with_uploaded_scene(&scene);
@@ -311,7 +311,7 @@ fn eight_requests_wait_for_a_commit_and_further_ones_are_refused() {
 }
 
 #[test]
-fn a_hello_drops_a_commit_and_what_waits_for_it() {
+fn a_hello_drops_a_commit_and_its_waiting_requests() {
     let scene = constant_scene(0.01);
     let mut board = with_uploaded_scene(&scene);
     let commit = request(901, Command::Commit { crc32: crc32(&scene) });
@@ -377,7 +377,7 @@ fn the_same_bytes_in_another_shape_are_another_bitmap() {
     assert_eq!(board.upload_bitmap(40, 20, &samples), Ok(Accepted::AlreadyHeld));
 }
 
-/// Two pictures side by side. Both under the finger at once would take too long.
+/// Two pictures side by side. Overlapping, they would be too costly.
 #[cfg(feature = "bitmap")]
 fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
     let beside = |x_m, crc32| {
@@ -389,7 +389,7 @@ fn side_by_side([left, right]: [u32; 2]) -> [Record; 2] {
 
 #[cfg(feature = "bitmap")]
 #[test]
-fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
+fn fragmented_free_space_is_compacted_when_nothing_plays() {
     let mut board = TestBoard::connected();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 33_000]);
     board.upload_bitmap(300, 100, &first).unwrap();
@@ -406,7 +406,7 @@ fn free_space_in_pieces_is_moved_together_when_nothing_plays() {
 
 #[cfg(feature = "bitmap")]
 #[test]
-fn announced_bitmaps_stay_however_often_they_are_named() {
+fn announced_bitmaps_stay_when_announced_again() {
     let mut board = TestBoard::connected();
     let (first, second, third) = (vec![1; 30_000], vec![2; 30_000], vec![3; 30_000]);
     board.upload_bitmap(300, 100, &first).unwrap();
@@ -422,7 +422,7 @@ fn announced_bitmaps_stay_however_often_they_are_named() {
 /// A refused scene frees its part of the pool for the next scene.
 #[cfg(feature = "bitmap")]
 #[test]
-fn bitmaps_of_a_scene_that_was_refused_give_way() {
+fn bitmaps_of_a_refused_scene_are_evicted() {
     let mut board = TestBoard::connected();
     let playing = vec![1; 20_000];
     board.upload_bitmap(200, 100, &playing).unwrap();
@@ -436,7 +436,7 @@ fn bitmaps_of_a_scene_that_was_refused_give_way() {
 
 /// `frixel-model` tests that the rows are those of the whole table.
 #[test]
-fn a_table_ends_where_the_header_says() {
+fn a_table_ends_at_the_headers_largest_friction() {
     let of = |electric_friction_max_n| {
         let bytes = scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]);
         table_rows(&Scene::parse(&bytes).unwrap(), &Board::SIMULATOR).unwrap()
@@ -452,7 +452,7 @@ fn a_table_ends_where_the_header_says() {
 /// The session's orders for a command, without signs of life.
 fn orders_for(board: &mut TestBoard, command: Command) -> Vec<Order<'static>> {
     board.session.receive(&request(7, command), &board.ticker.status());
-    std::iter::from_fn(|| board.session.next_order()).filter(|order| !matches!(order, Order::HostHeard)).collect()
+    std::iter::from_fn(|| board.session.next_order()).filter(|order| !matches!(order, Order::SignOfLife)).collect()
 }
 
 #[test]
@@ -480,7 +480,7 @@ fn a_touch_of_the_host_goes_to_the_ticker_once() {
 }
 
 #[test]
-fn a_board_with_a_touch_source_takes_none_from_the_host() {
+fn a_board_with_a_touch_source_refuses_touches_of_the_host() {
     let mut board = TestBoard::new();
     let hello = board.hello();
     assert_eq!(hello.features & feature::HOST_TOUCH, 0);
@@ -525,7 +525,7 @@ fn the_text_of_a_fault_is_reported_whole() {
 
 #[cfg(feature = "telemetry")]
 #[test]
-fn tick_times_are_those_that_the_tick_recorded_and_zero_where_nothing_measures() {
+fn tick_times_are_the_recorded_ones_or_zero_without_a_meter() {
     static METER: frixel_control::TickMeter = frixel_control::TickMeter::new(3_700);
     let mut board = TestBoard::connected();
     assert_eq!(board.command(Command::TickTimes), Ok(Accepted::TickTimes(TickTimes::default())));

@@ -72,7 +72,7 @@ fn a_power_cut_at_any_byte_leaves_one_good_copy() {
 }
 
 #[test]
-fn flash_that_fails_leaves_the_copy_before() {
+fn failing_flash_leaves_the_previous_copy() {
     let mut flash = flash_with(&[&content(1)], false);
     flash.is_worn = true;
     assert_eq!(write(&mut flash, &content(2)), Writing::Failed);
@@ -80,7 +80,7 @@ fn flash_that_fails_leaves_the_copy_before() {
 }
 
 #[test]
-fn a_rotten_copy_gives_way_to_the_older_one_and_is_written_over() {
+fn a_corrupt_copy_is_superseded_by_the_older_one_and_overwritten() {
     let (first, second) = (content(1), content(2));
     let newest = flash_with(&[&first, &second], false);
     for at in 0..PAGES * PAGE_LEN {
@@ -95,7 +95,7 @@ fn a_rotten_copy_gives_way_to_the_older_one_and_is_written_over() {
 }
 
 #[test]
-fn the_first_copy_is_what_a_writer_leaves_in_an_erased_flash() {
+fn the_first_copy_equals_what_a_writer_leaves_in_erased_flash() {
     let flash = flash_with(&[&content(1)], false);
     assert_eq!(flash.bytes[PAGE_LEN..PAGE_LEN + COPY_LEN], first_copy(&content(1)));
 }

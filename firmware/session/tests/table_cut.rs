@@ -75,9 +75,9 @@ fn played(header: &Header, random: &RandomScene, seed: u64) -> Vec<Played> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, ..ProptestConfig::default() })]
 
-    /// Codes and flags are the same at every tick. A flag would be set if a tick requested more than the cut table has.
+    /// Codes and flags are the same at every tick. A tick beyond the end of the truncated table would set a flag.
     #[test]
-    fn no_tick_sees_the_cut(seed in any::<u64>()) {
+    fn no_tick_is_affected_by_the_truncation(seed in any::<u64>()) {
         let random = RandomScene::new(seed, bitmap_crc32(3, 2, &SAMPLES));
         let [cut, whole] = [largest_n(&random), None].map(|electric_friction_max_n| {
             played(&Header { electric_friction_max_n, ..random.header }, &random, seed)
@@ -90,7 +90,7 @@ proptest! {
 
 /// Ensures that the test above is not vacuous.
 #[test]
-fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
+fn many_random_scenes_drive_with_a_truncated_table() {
     let crc32 = bitmap_crc32(3, 2, &SAMPLES);
     let scenes: Vec<(u64, RandomScene)> = (0..500).map(|seed| (seed, RandomScene::new(seed, crc32))).collect();
     let cut: Vec<&(u64, RandomScene)> = scenes
@@ -111,7 +111,7 @@ fn many_random_scenes_have_a_table_that_is_cut_and_drive() {
 }
 
 #[test]
-fn a_table_ends_where_the_header_says() {
+fn a_table_ends_at_the_headers_largest_friction() {
     let of = |electric_friction_max_n| rows(&scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]));
     let whole = of(None);
     assert_eq!(whole.filled, whole.whole);
@@ -134,7 +134,7 @@ fn friction_above_the_end_of_the_table_is_counted_as_saturated() {
 }
 
 #[test]
-fn a_largest_friction_that_is_no_number_is_refused() {
+fn a_largest_friction_of_nan_is_refused() {
     for electric_friction_max_n in [f32::NAN, f32::INFINITY, -0.01] {
         let header = Header { electric_friction_max_n: Some(electric_friction_max_n), ..HEADER };
         let mut board = TestBoard::connected();
@@ -147,7 +147,7 @@ fn a_largest_friction_that_is_no_number_is_refused() {
 }
 
 #[test]
-fn a_scene_that_says_that_its_layers_stay_refuses_to_change_them() {
+fn a_scene_with_fixed_layers_refuses_changes() {
     let mut board = TestBoard::new();
     board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
     let change = Command::SetLayer { layer: 0, on: true, gain: 2.0 };

@@ -55,7 +55,7 @@ fn largest_scene() -> Vec<u8> {
     scene(&HEADER, &(0..RECORDS_MAX).map(beside).collect::<Vec<_>>())
 }
 
-/// Frames that a host may send behind a commit without waiting for its answer: requests that depend on the commit,
+/// Frames that a host may send after a commit without waiting for its answer: requests that depend on the commit,
 /// chunks, and a request that cannot be parsed.
 fn pipelined() -> Vec<u8> {
     let commands = [
@@ -158,7 +158,7 @@ fn next_track(board: &mut TestBoard, touch: Touch) -> Track {
         match board.session.next_order() {
             Some(Order::Track(track)) => return track,
             Some(_) => {}
-            None => panic!("the report says nothing new"),
+            None => panic!("the report has no new data"),
         }
     }
 }
@@ -173,7 +173,7 @@ fn a_track_that_is_handed_over_late_is_the_same_track() {
         board.ticks(100 - delay_ticks.max(1));
         let x_m = board.status().telemetry.finger_x_m;
         assert!((x_m - (0.01 + 2.5e-6 * 1_700.0)).abs() < 1e-5, "{delay_ticks}: {x_m}");
-        // It ends when it would have ended: 100 ticks are gone.
+        // Its end does not move: 100 ticks have passed.
         let on = (0..2 * STALE_TICKS).take_while(|_| board.tick() != OFF).count() as u32;
         assert!((STALE_TICKS - 102..=STALE_TICKS - 99).contains(&on), "{delay_ticks}: {on}");
     }
@@ -191,7 +191,7 @@ fn a_track_that_is_handed_over_after_its_end_drives_nothing() {
 
 /// The tick follows a track for at most four report periods, even if its end is later.
 #[test]
-fn a_track_of_late_end_expires_after_four_report_periods() {
+fn a_track_with_a_late_end_expires_after_four_report_periods() {
     let mut board = playing();
     let track = next_track(&mut board, report(4 * REPORT_TICKS));
     for endless in [track.until_tick + 1_000_000, track.from_tick.wrapping_add(i32::MAX as u32)] {
@@ -249,7 +249,7 @@ fn a_track_that_ended_long_ago_never_comes_back() {
     }
     board.ticks(2 * STALE_TICKS);
     assert_eq!(board.tick(), OFF);
-    // The tick count comes round.
+    // The tick count wraps to the same value.
     board.ticker.set_tick(first_tick);
     board.command(Command::Ping).unwrap();
     assert!((0..1_000).all(|_| board.tick() == OFF));
@@ -296,7 +296,7 @@ fn lost_reports_and_a_silent_host_end_the_drive_while_the_tick_count_wraps() {
 }
 
 #[test]
-fn a_still_finger_is_ramped_away_while_the_tick_count_wraps() {
+fn a_still_finger_is_ramped_down_while_the_tick_count_wraps() {
     for ticks in [100, 2_100, 2_300, 2_500] {
         let mut board = playing_until_wrap(ticks);
         let mut volts = Vec::new();

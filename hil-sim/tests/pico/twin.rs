@@ -21,7 +21,7 @@ const LAG_TICKS_MAX: u32 = 40;
 /// Steps of a commit, at most.
 const COMMIT_STEPS_MAX: u32 = 128;
 /// Numbers of kinds of orders.
-const HOST_HEARD: u32 = 0;
+const SIGN_OF_LIFE: u32 = 0;
 const TRACK: u32 = 1;
 
 /// The board.
@@ -74,8 +74,8 @@ impl Twin {
 
     /// Passes the session's next order to the ticker. It must equal the order that the emulated board's tick took.
     fn take(&mut self, expected: &AppliedOrder) {
-        if expected.words[0] == HOST_HEARD {
-            self.ticker.apply(Order::HostHeard);
+        if expected.words[0] == SIGN_OF_LIFE {
+            self.ticker.apply(Order::SignOfLife);
             return;
         }
         let heard = if expected.words[0] == TRACK { from_tick(expected) - 1 } else { expected.tick - 1 };
@@ -98,7 +98,7 @@ impl Twin {
                 // Discard the answers.
                 while self.session.transmit(&mut [0; 256]) > 0 {}
                 match self.session.next_order() {
-                    None | Some(Order::HostHeard) => {}
+                    None | Some(Order::SignOfLife) => {}
                     Some(order) => return order,
                 }
             }
@@ -140,7 +140,7 @@ fn sorted(words: &[u32]) -> Vec<u32> {
 
 fn kind(order: &Order) -> u32 {
     match order {
-        Order::HostHeard => HOST_HEARD,
+        Order::SignOfLife => SIGN_OF_LIFE,
         Order::Track(_) => TRACK,
         Order::Lift => 2,
         Order::Load(_) => 3,

@@ -206,7 +206,7 @@ fn orders_change_the_state_as_in_the_table() {
         (Order::ClearFault, State::Faulted, State::Disarmed),
     ];
     let orders =
-        [Order::HostHeard, Order::Arm, Order::Play, Order::Stop, Order::Disarm, Order::ClearFault, Order::Unload];
+        [Order::SignOfLife, Order::Arm, Order::Play, Order::Stop, Order::Disarm, Order::ClearFault, Order::Unload];
     for order in &orders {
         for before in [State::Disarmed, State::Armed, State::Active, State::Faulted] {
             let mut supervisor = in_state(before);
@@ -220,7 +220,7 @@ fn orders_change_the_state_as_in_the_table() {
 
 /// Ticks after the last sign of life, at `heard_at_tick`, until the supervisor disarms.
 fn ticks_to_silence(mut supervisor: Supervisor, heard_at_tick: u32, limit: u32) -> Option<u32> {
-    supervisor.apply(&Order::HostHeard, heard_at_tick);
+    supervisor.apply(&Order::SignOfLife, heard_at_tick);
     (1..=limit).find(|ticks| {
         supervisor.expire(heard_at_tick.wrapping_add(*ticks));
         assert_eq!(supervisor.host_silent(), supervisor.state() == State::Disarmed);
@@ -248,7 +248,7 @@ fn a_host_without_a_sign_of_life_for_half_a_day_is_silent() {
         for state in [State::Armed, State::Active] {
             let mut supervisor = in_state(state);
             supervisor.set_host_timeout(800);
-            supervisor.apply(&Order::HostHeard, 7);
+            supervisor.apply(&Order::SignOfLife, 7);
             supervisor.expire(7_u32.wrapping_add(age_ticks));
             assert_eq!((supervisor.state(), supervisor.host_silent()), (State::Disarmed, true), "{age_ticks}");
         }
@@ -270,7 +270,7 @@ fn a_host_that_arms_again_is_no_longer_silent() {
     let mut supervisor = in_state(State::Armed);
     supervisor.expire(10_001);
     assert!(supervisor.host_silent());
-    supervisor.apply(&Order::HostHeard, 10_002);
+    supervisor.apply(&Order::SignOfLife, 10_002);
     assert!(supervisor.host_silent(), "it is heard, and has not armed");
     press_switch(&mut supervisor);
     supervisor.apply(&Order::Arm, 10_002);

@@ -48,7 +48,7 @@ impl<'a> Ticker<'a> {
             #[cfg(feature = "stream")]
             Order::EndStream { last } => self.stream.end(last),
             // The supervisor has already applied them.
-            Order::HostHeard | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
+            Order::SignOfLife | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
             // `apply` has handled them.
             Order::Track(_) | Order::Lift => {}
         }

@@ -97,7 +97,7 @@ impl Link {
         !self.waiting.is_empty()
     }
 
-    /// Whether a request waits that begins a stream.
+    /// Whether a waiting request begins a stream.
     pub(crate) fn has_waiting_stream(&self) -> bool {
         self.waiting.iter().any(|waiting| matches!(waiting.command, Command::StartStream { .. }))
     }

@@ -25,7 +25,7 @@ const JITTER_INTERVALS: f32 = 0.04;
 const FIRST_VELOCITY_M_PER_S: f32 = 0.3;
 /// Distance from the expected place, in m, beyond which a sample belongs to another touch and restarts the filter.
 const JUMP_M: f32 = 5e-3;
-/// Longest step for which the transition is computed, in units of [`ACCELERATION_S`]. A track ends before.
+/// Longest step for which the transition is computed, in units of [`ACCELERATION_S`]. Tracks are shorter.
 const STEP_MAX: f32 = 3.0;
 
 /// Singer's transition of place, velocity and acceleration over a time.
@@ -238,7 +238,7 @@ impl Estimator {
     }
 }
 
-/// Length of a vector, within 8 %; the deviations above are not known better.
+/// Length of a vector, within 8 %; the standard deviations above are no more accurate.
 fn about_length([x, y]: [f32; 2]) -> f32 {
     let (x, y) = (x.abs(), y.abs());
     if x > y { x + 0.4 * y } else { y + 0.4 * x }
@@ -303,7 +303,7 @@ mod tests {
         }
     }
 
-    /// The covariance does not depend on what was measured: however the samples come, it stays one.
+    /// The covariance depends only on the times of the samples, and stays positive for any of them.
     #[test]
     fn the_covariance_stays_positive() {
         for (ticks, speed) in [(5, 0.0), (80, 0.1), (400, 1.0), (3_999, 0.3)] {

@@ -109,12 +109,12 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_leads_and_gives_back_what_it_took() {
+    fn the_latest_leads_until_it_lifts() {
         let mut fingers = Fingers::new();
         fingers.touch(1, place(1, 0), Leader::Latest);
         assert_eq!(reports(&mut fingers), [place(1, 0)]);
         fingers.touch(5, place(5, 0), Leader::Latest);
-        assert_eq!(reports(&mut fingers), [Touch::Up, place(5, 0)], "the way between them is nobody's");
+        assert_eq!(reports(&mut fingers), [Touch::Up, place(5, 0)], "no track connects the two fingers");
         fingers.touch(1, place(1, 1), Leader::Latest);
         assert_eq!(reports(&mut fingers), []);
         fingers.lift(5, Leader::Latest);
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn another_rule_another_leader() {
+    fn a_change_of_rule_changes_the_leader() {
         let mut fingers = Fingers::new();
         fingers.touch(1, place(1, 0), Leader::First);
         fingers.touch(2, place(2, 0), Leader::First);
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn one_finger_too_many_is_not_there_and_a_new_host_has_none() {
+    fn excess_fingers_are_ignored_and_a_new_host_starts_without_fingers() {
         let mut fingers = Fingers::new();
         for finger in 0..20 {
             fingers.touch(finger, place(finger, 0), Leader::Latest);

@@ -7,18 +7,18 @@
 use frixel_control::StandstillRamp;
 use frixel_control::is_past;
 
-/// Time, in s, in which a finger that moves by less than [`SLOW_WITHIN_M`], 1.2 mm/s on average, counts as still.
+/// A finger that moves by less than [`SLOW_WITHIN_M`] in this time, in s, counts as still: 1.2 mm/s on average.
 const STILL_AFTER_S: f32 = 50e-3;
 /// See [`STILL_AFTER_S`]. A larger value would ramp down under creeping fingers, a smaller one would drive a resting
 /// finger for more of the time. `cargo test -p frixel-hil-sim --test main resting` measures that time;
 /// docs/design/touch.md states it.
 const SLOW_WITHIN_M: f32 = 0.06e-3;
-/// Distance, in m, by which a still finger must move within [`MOVING_WITHIN_S`], 2 mm/s on average, to count as moving.
-/// It is more than a step of 0.18 mm along one side, as reported by screens.
+/// Distance, in m, by which a still finger must move within [`MOVING_WITHIN_S`] to count as moving: 2 mm/s on average.
+/// It exceeds one step of a touchscreen along an axis, 0.18 mm.
 const MOVING_BEYOND_M: f32 = 0.2e-3;
 /// See [`MOVING_BEYOND_M`].
 const MOVING_WITHIN_S: f32 = 100e-3;
-/// Duration of a whole ramp, down or up.
+/// Duration of a whole ramp, down or up, in s.
 const RAMP_S: f32 = 10e-3;
 
 /// The detector's timing in ticks.
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_slow_for_50_ms_is_ramped_away_in_10_ms_and_back_above_2_mm_per_s() {
+    fn a_finger_slow_for_50_ms_is_ramped_down_in_10_ms_and_up_above_2_mm_per_s() {
         for period_ticks in [1, 2, 5, 80, 400, 2_000] {
             let mut run = Run::new(period_ticks);
             assert!(run.run_for(1.1e-3, 2000) >= 1.0, "{period_ticks}");
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_that_stops_on_the_way_back_is_ramped_away_50_ms_later() {
+    fn a_finger_that_stops_during_the_ramp_up_is_ramped_down_50_ms_later() {
         let mut run = Run::new(80);
         run.run_for(0.0, 2_600);
         run.run_for(0.1, 160);

@@ -17,9 +17,9 @@ const SAMPLE_AGE_MAX_S: f32 = 0.1;
 /// moves away from the estimate after reaching it. The time is longer than one interval, so that the next track starts
 /// before this one turns, even if its report is late.
 const BLEND_INTERVALS: f32 = 1.5;
-/// Distance of two samples, in intervals between reports, below which they were bunched.
+/// Two samples closer than this, in intervals between reports, were bunched: the report of the first was delayed.
 const BUNCHED_INTERVALS: f32 = 0.25;
-/// Weight of an interval between two reports in their mean.
+/// Weight of the newest interval between reports in the running mean.
 const INTERVAL_SHARE: f32 = 0.125;
 
 /// Constants of the board's touch source, computed once.
@@ -234,7 +234,7 @@ mod tests {
         tracker.report(Touch::Down { x_m, y_m: 0.03, age_ticks }, tick);
         match tracker.next_order(predicts) {
             Some(Order::Track(track)) => track,
-            _ => panic!("the report says something new"),
+            _ => panic!("the report has no new data"),
         }
     }
 
@@ -273,8 +273,8 @@ mod tests {
         assert_eq!(track.until_tick, 10_000 + 10 + 1);
     }
 
-    /// A finger in minimum-jerk motion and noise: from the third report on, each track goes on where the one before is,
-    /// and has come to the estimate when the next report is due and a half.
+    /// A finger that moves back and forth, with noise: from the third report on, each track starts where the previous
+    /// one is, and has reached the estimate after one and a half report intervals.
     #[test]
     fn the_place_does_not_jump_at_a_report() {
         let mut tracker = Tracker::new(&Board::SIMULATOR);
@@ -296,10 +296,10 @@ mod tests {
             }
             before = Some(track);
         }
-        assert!(jumps_m > 5e-5, "there was something to lead on from: {jumps_m}");
+        assert!(jumps_m > 5e-5, "the estimates jump, so there is something to blend: {jumps_m}");
     }
 
-    /// A report of a steady finger is held back for a period, and arrives with the next, said to be as young as that.
+    /// A report of a steady finger is delayed by a period, and arrives with the next one, with the same stated age.
     #[test]
     fn a_bunched_report_counts_as_lost() {
         let steady_m = |tick: u32| 0.01 + 0.1 * 25e-6 * tick as f32;
@@ -311,7 +311,7 @@ mod tests {
                 match report {
                     20 => continue,
                     21 if bunched => {
-                        // One tick before the next report, and said to be of that time.
+                        // One tick before the next report, with a stated age of zero.
                         track(&mut tracker, steady_m(tick - REPORT_TICKS), tick - 1, 0, true);
                     }
                     _ => {}
@@ -341,7 +341,7 @@ mod tests {
         assert_eq!((second.place_m[0], second.velocity_m_per_s), (0.021, [0.0; 2]));
     }
 
-    /// Reports at four times the rate of the board's period are no bunches, from the first on.
+    /// Reports at four times the board's rate do not count as bunched, from the first on.
     #[test]
     fn a_fast_source_is_followed_from_its_third_report_on() {
         let mut tracker = Tracker::new(&Board::SIMULATOR);
@@ -364,7 +364,7 @@ mod tests {
         }
     }
 
-    /// The path's rate holds what leads from one track to the next; the finger's velocity does not.
+    /// The path's rate includes the correction from one track to the next; the finger's velocity does not.
     #[test]
     fn the_velocity_is_the_fingers() {
         let mut tracker = Tracker::new(&Board::SIMULATOR);

@@ -29,11 +29,11 @@ pub(crate) enum Loading {
         /// Costs of the layers before it.
         costs: LayerCosts,
     },
-    /// The cost of a tick, beginning with a cell of the grid.
+    /// The cost of a tick in the remaining cells of the grid.
     Cost {
-        /// Number of the first.
+        /// Number of the next cell.
         next_cell: usize,
-        /// The worst cell before it.
+        /// The worst of the cells before it.
         worst: Worst,
         /// Costs of all layers.
         costs: LayerCosts,
@@ -141,7 +141,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     let limits = &board.limits;
     let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
     let carrier = Carrier {
-        // The branch that is never taken lets the compiler omit the sine in a small image.
+        // Without the feature, this lets the compiler omit the sine. `load_drive` has refused such a scene.
         waveform: match header.waveform {
             Waveform::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
             _ => Waveform::Square,
@@ -172,8 +172,8 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
     Ok((timing, voltage_max_v_rms))
 }
 
-/// The largest rms voltage of a board for a header, within its rms limit, and within its peak limit at the peaks of its
-/// carrier.
+/// The largest rms voltage of a scene on a board, within the scene's rms limit and within its peak limit at the
+/// carrier's peaks.
 ///
 /// # Errors
 ///
@@ -264,8 +264,8 @@ fn finger(header: &Header) -> Finger<f32> {
     }
 }
 
-/// Bytes of an [`Active`] filled by a scene, for each of the two: its layers, points, waves and clicks. The rest is the
-/// same for every scene. They contain no pointer, so their number is the same on every target.
+/// Bytes that a scene fills in each of the two [`Active`] buffers: its layers, points, waves and clicks. The rest is
+/// the same for every scene. There is no pointer among them, so the number is the same on every target.
 pub fn active_bytes_filled(scene: &Scene) -> usize {
     scene.records().map(|record| active_bytes(&record)).sum::<usize>() + scene.points().len() * size_of::<Point>()
 }

@@ -109,7 +109,7 @@ impl<'a> Scenes<'a> {
         self.header().is_none_or(|header| header.prediction)
     }
 
-    /// The rule for selecting one of several fingers; the earliest one without a scene.
+    /// The rule for selecting one of several fingers; without a scene, the first finger.
     pub(crate) fn leader(&self) -> Leader {
         self.header().map_or(Leader::First, |header| header.leader)
     }

@@ -53,8 +53,8 @@ impl Upload {
     /// Takes a chunk. A chunk received before is ignored. A chunk ahead of the expected one is dropped, and the
     /// expected chunk is reported once.
     pub(crate) fn take(&mut self, number: u16, bytes: &[u8], staging: &mut Staging, pool: &BitmapPool) -> ChunkReport {
-        let wanted_len = (self.len - self.received).min(CHUNK_LEN as u32);
-        if number != self.next_chunk || bytes.len() as u32 != wanted_len || wanted_len == 0 {
+        let expected_len = (self.len - self.received).min(CHUNK_LEN as u32);
+        if number != self.next_chunk || bytes.len() as u32 != expected_len || expected_len == 0 {
             let early = number > self.next_chunk && !self.gap_reported;
             self.gap_reported |= early;
             return if early { ChunkReport::Progress { next_chunk: self.next_chunk } } else { ChunkReport::Nothing };
@@ -64,7 +64,7 @@ impl Upload {
             Destination::Bitmap(bitmap) => pool.write((bitmap.offset + self.received) as usize, bytes),
         }
         self.digest.update(bytes);
-        self.received += wanted_len;
+        self.received += expected_len;
         self.next_chunk += 1;
         self.gap_reported = false;
         if self.received == self.len || self.next_chunk.is_multiple_of(PROGRESS_CHUNKS) {

@@ -17,15 +17,15 @@ pub(crate) struct States<'a> {
     pub(crate) orders: Orders<'a>,
     /// State after the ticker has applied all orders.
     state: State,
-    /// Whether a valid frame has arrived since the last order that reports it.
-    host_heard: bool,
-    /// Whether an [`Order::HostHeard`] has already waited for one order of the finger.
+    /// Whether a valid frame has arrived that no order has reported yet.
+    has_sign_of_life: bool,
+    /// Whether an [`Order::SignOfLife`] has already waited for one order of the finger.
     sign_of_life_waited: bool,
 }
 
 impl<'a> States<'a> {
     pub(crate) const fn new() -> Self {
-        Self { orders: Orders::new(), state: State::Disarmed, host_heard: false, sign_of_life_waited: false }
+        Self { orders: Orders::new(), state: State::Disarmed, has_sign_of_life: false, sign_of_life_waited: false }
     }
 
     pub(crate) fn state(&self) -> State {
@@ -33,8 +33,8 @@ impl<'a> States<'a> {
     }
 
     /// Records a sign of life of the host.
-    pub(crate) fn host_heard(&mut self) {
-        self.host_heard = true;
+    pub(crate) fn note_sign_of_life(&mut self) {
+        self.has_sign_of_life = true;
     }
 
     /// Whether the ticker has applied all orders.
@@ -60,8 +60,9 @@ impl<'a> States<'a> {
         }
     }
 
-    /// Handles the commands that are refused while a fault is latched. A Play is refused unless there `is_scene`.
-    pub(crate) fn drive(&mut self, command: Command, status: &Status, is_scene: bool) -> Result<Accepted, Refusal> {
+    /// Handles the commands that are refused while a fault is latched. Play is also refused unless the board
+    /// `has_scene`.
+    pub(crate) fn drive(&mut self, command: Command, status: &Status, has_scene: bool) -> Result<Accepted, Refusal> {
         if self.state == State::Faulted
             && let Some((fault, _)) = status.fault
         {
@@ -71,7 +72,7 @@ impl<'a> States<'a> {
             Command::Disarm if self.orders.ends_with_disarm() => Ok(Accepted::Done),
             Command::Arm if !status.arm_switch => Err(Refusal::ArmSwitch),
             Command::Arm => self.change(Order::Arm, &[State::Disarmed], State::Armed),
-            Command::Play if !is_scene => Err(Refusal::NoScene),
+            Command::Play if !has_scene => Err(Refusal::NoScene),
             Command::Play => self.change(Order::Play, &[State::Armed], State::Active),
             Command::Stop => self.change(Order::Stop, &[State::Active], State::Armed),
             _ => self.change(Order::Disarm, &[State::Disarmed, State::Armed, State::Active], State::Disarmed),
@@ -99,19 +100,19 @@ impl<'a> States<'a> {
     }
 
     /// The next order. Waiting orders come first: they are few, and delay a lift by only a few ticks. An
-    /// [`Order::HostHeard`] waits for at most one order of the `finger`. It waits so that pings do not delay tracks,
+    /// [`Order::SignOfLife`] waits for at most one order of the `finger`. It waits so that pings do not delay tracks,
     /// but no longer, so that a touch source that reports in every tick does not cause a host timeout.
     pub(crate) fn next_order(&mut self, finger: impl FnOnce() -> Option<Order<'a>>) -> Option<Order<'a>> {
         if let Some(order) = self.orders.next() {
-            self.host_heard &= !order.is_sign_of_life();
+            self.has_sign_of_life &= !order.is_sign_of_life();
             return Some(order);
         }
-        let order = if self.host_heard && self.sign_of_life_waited { None } else { finger() };
-        if !self.host_heard {
+        let order = if self.has_sign_of_life && self.sign_of_life_waited { None } else { finger() };
+        if !self.has_sign_of_life {
             return order;
         }
         self.sign_of_life_waited = order.is_some();
-        self.host_heard = order.is_some();
-        order.or(Some(Order::HostHeard))
+        self.has_sign_of_life = order.is_some();
+        order.or(Some(Order::SignOfLife))
     }
 }

@@ -19,16 +19,16 @@ pub const LIMITS_LEN: usize = 4 * WORD_LEN;
 /// It is the rating of the parts in `docs/board/hardware.md`. The limit for a person who touches the electrode is
 /// separate: it follows from the series resistance, and is not stored (`frixel_model::TouchBound`).
 pub const VOLTAGE_CEILING_V_PEAK: f32 = 200.0;
-/// Largest rms current that may be stored, in A: the limit of IEC 61010-1, 6.3.1 (unread) for normal use.
+/// Largest rms current that may be stored, in A: the limit of IEC 61010-1, 6.3.1 (original not read), for normal use.
 ///
 /// The board compares currents without the weighting of IEC 60990, which only reduces them: for a sine of 1 kHz by a
 /// factor of 1.7, the margin.
 pub const CURRENT_CEILING_A_RMS: f32 = 0.5e-3;
-/// Largest peak current that may be stored, in A: the limit of IEC 61010-1, 6.3.2 (unread) for a single-fault
-/// condition.
+/// Largest peak current that may be stored, in A: the limit of IEC 61010-1, 6.3.2 (original not read), for a
+/// single-fault condition.
 ///
 /// Also compared without the weighting of IEC 60990. With it, a current of 5 mA that decays within 36 us, as at the
-/// carrier's edges with 68 kOhm, counts as 0.51 mA of the 0.7 mA of 6.3.1 (unread): a margin of 27 %.
+/// carrier's edges with 68 kOhm, counts as 0.51 mA of the 0.7 mA of 6.3.1: a margin of 27 %.
 pub const CURRENT_CEILING_A_PEAK: f32 = 5e-3;
 
 /// Largest relative deviation of the stored limits' series resistance from the build's.
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_no_board_has_are_not_believed() {
+    fn implausible_numbers_are_refused() {
         for limits in [
             BoardLimits { voltage_max_v_peak: 501.0, full_scale_v_peak: 600.0, ..MEASURED },
             BoardLimits { voltage_max_v_peak: MEASURED.full_scale_v_peak * 1.1, ..MEASURED },
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_of_a_board_with_another_series_resistance_are_not_taken() {
+    fn limits_of_a_board_with_another_series_resistance_are_refused() {
         let stored = write_limits(&DEFAULTS, CeilingPolicy::InForce).unwrap();
         for (series_ohm, is_taken) in
             [(67e3, false), (67.5e3, true), (68.5e3, true), (69e3, false), (75e3, false), (370e3, false)]
@@ -365,7 +365,7 @@ mod tests {
 
     /// A capacitance in another unit would make every current a thousandth.
     #[test]
-    fn edges_that_resistance_and_electrode_do_not_make_are_neither_stored_nor_read_back() {
+    fn edges_inconsistent_with_resistance_and_electrode_are_neither_stored_nor_read_back() {
         for (edges_us, electrode_nf, is_taken) in [
             (37.5, 0.53e-3, false),
             (37.5, 530.0, false),
@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn a_resistance_that_lets_a_stuck_amplifier_drive_more_than_a_single_fault_may_is_refused() {
+    fn a_resistance_too_low_for_an_amplifier_stuck_at_a_rail_is_refused() {
         for (series_ohm, is_taken) in [(41.9e3, false), (42.1e3, true), (374e3, true)] {
             let limits = Board::NUCLEO_G474RE.behind(series_ohm).limits;
             let found = check_touched_board(&limits);

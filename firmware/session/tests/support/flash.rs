@@ -82,7 +82,7 @@ impl WritableFlash for SimulatedFlash {
                 if at == start {
                     return;
                 }
-                // The page has any content between the former one and erased.
+                // The content is undefined between the previous one and erased.
                 for at in start..start + PAGE_LEN {
                     self.bytes[at] |= self.noise.byte();
                     self.torn[at / WORD_LEN] = true;

@@ -31,7 +31,7 @@ pub const COMMIT_POLLS_MAX: u32 = 128;
 pub struct TestBoard {
     pub session: Session<'static>,
     pub ticker: Ticker<'static>,
-    /// The board's default inputs: a held switch, and a monitor that reads right.
+    /// The board's default inputs: a held switch, and a correct monitor.
     pub sense: Sense,
     /// A report of the board's touch source, which the next tick consumes.
     pub touch: Option<Touch>,
@@ -229,7 +229,7 @@ impl TestBoard {
         self.command(Command::Commit { crc32: crc32(scene) })
     }
 
-    /// Lets the person at the arm switch release it and press it again, as it takes after a disarming.
+    /// Releases the arm switch and presses it again, as required after a disarming.
     pub fn press_switch(&mut self) {
         self.ticks(2);
     }
@@ -271,7 +271,7 @@ pub fn request(sequence: u16, command: Command) -> Vec<u8> {
     payload::request_frame(&Request { sequence, command }, &mut frame).unwrap().to_vec()
 }
 
-/// A picture with a millimetre from sample to sample.
+/// A picture with a pitch of 1 mm.
 pub fn bitmap(crc32: u32) -> Layer {
     Layer::Bitmap(Bitmap {
         crc32,
