@@ -2,8 +2,8 @@
 //!
 //! Tick, main loop and fault handling are those of every board (`frixel-board`). [`tick`] runs in the `SysTick`
 //! interrupt, above everything. Amplifier and touch source are words of memory that it shares with the simulator
-//! ([`shared`]). Instead of all that, [`lockstep`] ticks whenever the simulator sends it a tick. [`fault_injection`]
-//! causes faults on demand.
+//! ([`shared`]). [`lockstep`] replaces all that by a loop that ticks whenever the simulator sends a tick.
+//! [`fault_injection`] causes faults on demand.
 //!
 //! For `thumbv8m.main-none-eabihf` it is an image for `-M mps2-an505`, a Cortex-M33, which only ticks in lockstep; its
 //! timer, serial port and memory differ.

@@ -7,7 +7,7 @@ use frixel_control::Drive;
 use frixel_exchange::{STAMPED_TOUCH_WORDS, StampedTouch, layout, word_of};
 use frixel_session::Touch;
 
-/// Where the PSRAM is mapped (Arm DAI0386, MPS2 FPGA image AN386; AN505 as the emulator has it, `hw/arm/mps2-tz.c`).
+/// Address of the PSRAM (Arm DAI0386, MPS2 FPGA image AN386; AN505 as the emulator has it, `hw/arm/mps2-tz.c`).
 const BASE: *mut u32 = if cfg!(an505) { 0x8000_0000_usize } else { 0x2100_0000 } as *mut u32;
 const WORDS: usize = layout::SHARED_LEN / 4;
 

@@ -1,5 +1,5 @@
 //! The interrupt of `SysTick`, above every other interrupt and every critical section. It runs the tick of
-//! [`frixel_board::tick`], and passes to the simulator what the tick puts out.
+//! [`frixel_board::tick`], and passes its output to the simulator.
 
 use cortex_m::peripheral::SYST;
 use cortex_m_rt::exception;
@@ -11,7 +11,7 @@ use crate::period::Period;
 use crate::{inputs, output, period};
 
 static TICK: TickOwner<Mps2> = TickOwner::new();
-/// What the tick shares with the main loop.
+/// Data shared between the tick and the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
 /// Gives the tick to its interrupt, and enables the interrupt.
@@ -30,7 +30,7 @@ fn run(tick: &mut Tick<Mps2>) {
     if tick.period.host_wait.is_needed() {
         return;
     }
-    // The person lets go of the switch whenever the board waits for that.
+    // The simulated person releases the switch whenever the board waits for that.
     inputs::hold_switch(!tick.ticker.waits_for_release());
     tick.run();
     output::publish(SHARED.count());

@@ -1,6 +1,6 @@
 //! The processor's clock: 170 MHz from the internal oscillator, which needs no crystal. Its accuracy of 1 % is within
 //! the tolerance of a serial port: 3.3 % between both sides, for the divider in use (RM0440, "Tolerance of the USART
-//! receiver to clock deviation", unread).
+//! receiver to clock deviation", not read).
 
 use cortex_m::asm;
 use cortex_m::peripheral::{DCB, DWT};

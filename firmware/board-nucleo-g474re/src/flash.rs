@@ -17,9 +17,9 @@ const LEN: u32 = PAGES * BankTwo::PAGE_LEN;
 /// Keys that unlock the control register, in this order.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 
-/// A word that was read had an error that cannot be corrected.
+/// Whether a word that was read had an error that cannot be corrected.
 static UNREADABLE: AtomicBool = AtomicBool::new(false);
-/// Bank 2 is being read.
+/// Whether bank 2 is being read.
 static READING: AtomicBool = AtomicBool::new(false);
 
 /// Bank 2.

@@ -29,11 +29,11 @@ const SDA: u32 = 9;
 const DATA_READY: u32 = 2;
 const I2C3_FUNCTION: u8 = 8;
 
-/// In the memory for DMA (`memory.x`). Bytes that DMA has not written are written before they are read.
+/// Buffer in the memory for DMA (`memory.x`). Bytes that DMA has not written are written before they are read.
 #[unsafe(link_section = ".dma.BYTES")]
 static BYTES: [AtomicU8; MESSAGE_MAX_LEN] = [const { AtomicU8::new(0) }; MESSAGE_MAX_LEN];
 
-/// Takes the bus, and runs the main loop for ever with the frame as its touch source.
+/// Takes the bus, and runs the main loop forever with the frame as its touch source.
 pub fn run(main_loop: MainLoop<Nucleo>) -> ! {
     RCC.ccipr().modify(|w| w.set_i2c3sel(I2csel::HSI));
     pins::alternate_open_drain(GPIOC, SDA, I2C3_FUNCTION);

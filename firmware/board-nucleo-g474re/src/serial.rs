@@ -23,10 +23,10 @@ const USART2_FUNCTION: u8 = 7;
 /// Largest number of bytes that DMA sends at a time: 1.3 ms on the line.
 const TRANSMIT_LEN: usize = 256;
 
-/// In the memory for DMA (`memory.x`). It is read only where DMA has written.
+/// Buffer in the memory for DMA (`memory.x`), read only where DMA has written.
 #[unsafe(link_section = ".dma.RECEIVED")]
 static RECEIVED: [AtomicU8; RING_LEN] = [const { AtomicU8::new(0) }; RING_LEN];
-/// In the memory for DMA. It is written before DMA reads it.
+/// Buffer in the memory for DMA, written before DMA reads it.
 #[unsafe(link_section = ".dma.TRANSMITTED")]
 static TRANSMITTED: [AtomicU8; TRANSMIT_LEN] = [const { AtomicU8::new(0) }; TRANSMIT_LEN];
 
@@ -44,7 +44,7 @@ impl Usart {
         USART2.cr3().write(|w| {
             w.set_dmar(true);
             w.set_dmat(true);
-            // OVRDIS would bypass the FIFO of 8 bytes (RM0440, "USART_CR3", unread): one byte, 5 us, of room for a
+            // OVRDIS would bypass the FIFO of 8 bytes (RM0440, "USART_CR3", not read): one byte, 5 us, of room for a
             // DMA that waits for the bus, instead of 40 us.
         });
         let receive = dma::Transfer {
@@ -83,7 +83,8 @@ impl Uart for Usart {
     }
 
     fn remaining(&mut self) -> usize {
-        // Nothing is received while the flag of an overrun is set (RM0440, "USART receiver": "Overrun error", unread).
+        // Nothing is received while the flag of an overrun is set (RM0440, "USART receiver": "Overrun error", not
+        // read).
         if USART2.isr().read().ore() {
             USART2.icr().write(|w| w.set_ore(true));
         }

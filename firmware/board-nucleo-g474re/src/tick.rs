@@ -6,7 +6,7 @@
 //! | PB2 | input, pulled down | arm switch: high while held |
 //!
 //! The two lie on different connectors (PC10 on CN7, PB2 on CN10 beside a ground pin), so that no bridge between
-//! neighbours closes the switch (UM2505, "Extension connectors", unread).
+//! neighbours closes the switch (UM2505, "Extension connectors", not read).
 
 use cortex_m::peripheral::NVIC;
 use frixel_board::hardware::Hardware;
@@ -21,7 +21,7 @@ use crate::pins::{self, Pin};
 const AMPLIFIER_READY: u32 = 10;
 const ARM_SWITCH: u32 = 2;
 
-/// What the tick shares with the main loop.
+/// Data shared between the tick and the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
 #[cfg(feature = "log")]

@@ -3,9 +3,9 @@
 //!
 //! | | RP2040 | RP2350 |
 //! |---|---|---|
-//! | the boot ROM reads | 256 bytes with a checksum, which set the flash up for execution ([`BOOT_2`]) | a block that says what the image is (`IMAGE_DEFINITION`) |
+//! | the boot ROM reads | 256 bytes with a checksum, which set the flash up for execution ([`BOOT_2`]) | a block with the type of the image (`IMAGE_DEFINITION`) |
 //! | vector table | `0x1000_0100` | `0x1000_0000` |
-//! | `Reset` of `cortex-m-rt` | behind it | behind it |
+//! | `Reset` of `cortex-m-rt` | after it | after it |
 //! | code and constants, copied by `copy_code` | `0x1000_1000` | `0x1000_1000` |
 //!
 //! The copy takes 0.1 to 0.7 s, before the clocks run fast. Meanwhile the pins are as the reset has left them: the
@@ -27,7 +27,7 @@ static BOOT_2: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 static IMAGE_DEFINITION: [u32; 5] = [
     0xffff_ded3, // Begin.
     0x1021_0142, // `IMAGE_TYPE`, 1 word: executable, secure, Arm, RP2350.
-    0x0000_01ff, // `LAST`, behind 1 word.
+    0x0000_01ff, // `LAST`, after 1 word.
     0,           // The next block: this one.
     0xab12_3579, // End.
 ];

@@ -34,7 +34,7 @@ const _: () = assert!(chip::PLL.hz() == CORE_HZ && PLL_ADC.hz() == 48_000_000);
 /// Switches to the crystal and from it to the PLLs (RP2040, 2.15, "Clocks"; 2.16, "Crystal Oscillator"; 2.18, "PLL").
 pub fn start() {
     start_crystal();
-    // What the boot ROM has left: the core may run from a PLL.
+    // The boot ROM may have left the core running from a PLL.
     CLOCKS.clk_sys_ctrl().modify(|w| w.set_src(ClkSysCtrlSrc::CLK_REF));
     wait_until(|| selected_sys() == 1, "the reference as clock of the core");
     CLOCKS.clk_ref_ctrl().modify(|w| w.set_src(ClkRefCtrlSrc::XOSC_CLKSRC));

@@ -1,4 +1,4 @@
-//! The part of the flash that holds the limits: behind the first MiB, which belongs to the image. This image only reads
+//! The part of the flash that holds the limits: after the first MiB, which belongs to the image. This image only reads
 //! it.
 
 use core::ptr;
@@ -11,7 +11,7 @@ const FLASH: u32 = 0x1000_0000;
 /// Number of bytes that are read: one page for each copy of the limits.
 const LEN: u32 = 2 * StoreFlash::PAGE_LEN;
 
-/// The flash behind the image.
+/// The flash after the image.
 pub struct StoreFlash;
 
 impl Flash for StoreFlash {

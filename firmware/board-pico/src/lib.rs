@@ -1,15 +1,15 @@
 //! The firmware on a Raspberry Pi Pico 2 (RP2350) or Pico (RP2040): registers and wiring. `docs/board/hardware.md`
-//! lists the pins and the parts. Numbers and headings behind "RP2040" and "RP2350" refer to the data sheets of the two
+//! lists the pins and the parts. Numbers and headings after "RP2040" and "RP2350" refer to the data sheets of the two
 //! chips; where only one is cited, the other says the same.
 //!
 //! The Pico 2 is the board. The RP2040 has no floating-point unit, so the Pico reaches a fifth of the tick rate. It is
 //! supported because an emulator runs its image in this repository's CI. One source serves both. The differences are in
 //! [`chip`], [`clock`], [`boot`] and the unique number.
 //!
-//! One interrupt, [`tick`], runs above everything. Everything else runs in the main loop, but for the interrupt that
+//! One interrupt, [`tick`], runs above everything. Everything else runs in the main loop, except the interrupt that
 //! stores received bytes ([`serial`]). Code that is independent of the chip is in `firmware/board`.
 //!
-//! | part | does what |
+//! | part | use |
 //! |---|---|
 //! | PIO 0 | the beat of the tick, and the frames of the DAC on it ([`period`], [`dac`]) |
 //! | PIO 1 | the one-shot of the output ([`output`]) |

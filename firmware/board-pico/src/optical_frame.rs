@@ -30,7 +30,7 @@ const DATA_READY: usize = 18;
 const PERIOD: u32 = CORE_HZ / 400_000;
 const LOW: u32 = PERIOD * 3 / 5;
 
-/// Takes the bus, and runs the main loop for ever with the frame as its touch source.
+/// Takes the bus, and runs the main loop forever with the frame as its touch source.
 pub fn run(main_loop: MainLoop<Pico>) -> ! {
     clock::restart(Peripherals::set_i2c0);
     pins::connect_pulled_up(SDA, Function::I2c);

@@ -1,9 +1,9 @@
 //! The output enable: DAC clear and amplifier enable, held by a one-shot.
 //!
-//! State machine 0 of PIO 1 is the one-shot. A kick is a word that says which of the two pins are high, and for how
-//! long; they go low by themselves [`LIFE_US`] after the last kick, whatever the cores do. External resistors pull both
-//! wires down, so that they are low in reset, too. That disables the amplifier; [`zero_for_good`], which `main` calls
-//! first of all, clears a code that the DAC took meanwhile.
+//! State machine 0 of PIO 1 is the one-shot. A kick is a word with the levels of the two pins and their duration; the
+//! pins go low by themselves [`LIFE_US`] after the last kick, even if the core has stopped. External resistors pull
+//! both wires down, so that they are low in reset, too. That disables the amplifier; [`zero_for_good`], which `main`
+//! calls first of all, clears a code that the DAC took meanwhile.
 //!
 //! | pin | function | |
 //! |---|---|---|
@@ -34,7 +34,7 @@ const ROUND: u32 = 3 * 8;
 const ROUNDS: u32 = LIFE_US * (MACHINE_HZ / 1_000_000) / ROUND;
 
 const PROGRAM: [Instruction; 7] = [
-    // Idle, with both pins low, until there is a kick. From a round, it does not wait.
+    // Idle, with both pins low, until there is a kick. When entered from a round, it does not wait.
     PULL_BLOCKING,
     // The pins of the kick, and its rounds.
     shift_out(Destination::Pins, 2),
@@ -82,7 +82,7 @@ impl Output {
 /// Connects the enable to the one-shot, or forces it low (RP2040, 2.19.6.1, `GPIO0_CTRL`).
 #[inline]
 fn override_enable(over: Outover) {
-    // The function stays: what `zero_for_good` has disconnected, no kick connects again.
+    // The function stays, so that no kick reconnects a pin that `zero_for_good` has disconnected.
     IO_BANK0.gpio(AMPLIFIER_ENABLE).ctrl().modify(|w| w.set_outover(over));
 }
 

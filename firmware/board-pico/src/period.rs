@@ -1,6 +1,6 @@
 //! The period of the tick. A state machine of PIO 0 is the beat: it divides its clock into periods, raises the tick's
 //! interrupt at the start of each, and at the same instant of each lets another one send the DAC's frame
-//! ([`crate::dac`]). So state machines alone set the instant at which the DAC puts out a code, without software.
+//! ([`crate::dac`]). State machines alone thus set the instant at which the DAC outputs a code, without software.
 //!
 //! PWM 0, which drives no pin, counts the cycles of the core in a period. It starts with the beat, both count the same
 //! clock, and neither stops for a debugger, so they stay together.

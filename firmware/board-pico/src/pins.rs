@@ -4,7 +4,7 @@
 use frixel_drivers::pin::{DirectPin, ReadLevel, SetLevel};
 use rp_pac::{IO_BANK0, PADS_BANK0, RESETS, SIO};
 
-/// What drives a pin (RP2040, 2.19.2, "Function Select").
+/// Driver of a pin (RP2040, 2.19.2, "Function Select").
 #[derive(Clone, Copy)]
 pub(crate) enum Function {
     Uart = 2,

@@ -1,6 +1,6 @@
-//! Functions of the boot ROM that connect the flash (RP2040, 2.8.3, "Bootrom Contents").
-//! They are found by a code of two letters. They use the flash's interface directly, so that nothing can be read from
-//! the flash meanwhile; this image runs from RAM.
+//! Functions of the boot ROM that connect the flash (RP2040, 2.8.3, "Bootrom Contents"). They are looked up by a code
+//! of two letters. They use the flash's interface directly, so that nothing can be read from the flash meanwhile; this
+//! image runs from RAM.
 
 use core::mem;
 use core::ptr;
@@ -8,7 +8,7 @@ use core::ptr;
 /// A function without arguments.
 type Plain = unsafe extern "C" fn();
 
-/// The functions.
+/// The functions that connect the flash and disconnect it.
 pub(crate) struct FlashFunctions {
     connect: Plain,
     exit_xip: Plain,
@@ -17,7 +17,7 @@ pub(crate) struct FlashFunctions {
 }
 
 impl FlashFunctions {
-    /// Looks the functions up. `None` if the ROM has not all of them.
+    /// Looks the functions up. `None` if the ROM lacks one of them.
     pub(crate) fn find() -> Option<Self> {
         // SAFETY: these are the signatures of the functions with these codes.
         unsafe {
@@ -59,7 +59,7 @@ fn find(code: [u8; 2]) -> Option<usize> {
     (found != 0).then_some(found)
 }
 
-/// A word of the ROM.
+/// A halfword of the ROM.
 ///
 /// # Safety
 /// The address is an even one in the ROM.

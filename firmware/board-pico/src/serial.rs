@@ -1,6 +1,6 @@
 //! The serial port to the host: UART 0 at 2 Mbaud, through the UART of a Raspberry Pi Debug Probe, or another one.
 //!
-//! An interrupt below the tick stores the bytes that come: the receive FIFO holds 32 of them, 0.16 ms, and the main
+//! An interrupt below the tick stores received bytes: the receive FIFO holds 32 of them, 0.16 ms, and the main
 //! loop may take longer for a turn. The main loop fills the transmit FIFO itself.
 //!
 //! | pin | function | |
@@ -57,7 +57,7 @@ impl Uart0 {
         });
         pins::connect(TX, Function::Uart);
         pins::connect_pulled_up(RX, Function::Uart);
-        // SAFETY: what the handler shares are atomics. The priority is below the tick's, 0.
+        // SAFETY: the handler shares only atomics. The priority is below the tick's, 0.
         unsafe { NVIC::unmask(Interrupt::UART0_IRQ) };
         SerialPort::new(Self(()))
     }

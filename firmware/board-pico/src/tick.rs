@@ -5,7 +5,7 @@
 //! | GP10 | input, pulled down | amplifier: high while it is ready |
 //! | GP14 | input, pulled down | arm switch: high while held |
 //!
-//! The two are far from one another on the connector, so that no bridge between neighbours closes the switch.
+//! The two are far apart on the connector, so that no bridge between neighbours closes the switch.
 
 use cortex_m::peripheral::NVIC;
 use frixel_board::tick::{Tick, TickShared};
@@ -24,7 +24,7 @@ const BELOW_THE_TICK: u8 = 1 << 6;
 
 frixel_cortex_m::tick_interrupt!(Pico, PIO0_IRQ_0);
 
-/// What the tick shares with the main loop.
+/// Data shared between the tick and the main loop.
 pub static SHARED: TickShared = TickShared::new::<Period>();
 
 #[cfg(feature = "log")]

@@ -1,6 +1,6 @@
 //! The board's unique number, of 64 bits.
 
-/// The number of the flash, since the RP2040 has none (data sheet of the W25Q16JV, "Read Unique ID Number", unread).
+/// The number of the flash, since the RP2040 has none (data sheet of the W25Q16JV, "Read Unique ID Number", not read).
 #[cfg(feature = "rp2040")]
 pub(crate) fn unique_number() -> Option<[u8; 8]> {
     let rom = crate::rom::FlashFunctions::find()?;

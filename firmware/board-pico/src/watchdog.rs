@@ -1,5 +1,5 @@
 //! The watchdog: resets the chip when the main loop or the tick stops (RP2040, 4.7, "Watchdog"). The firmware resets
-//! itself by it, too, because nothing else that software can do resets the state machines of the PIOs.
+//! itself through it, too, because nothing else that software can do resets the state machines of the PIOs.
 
 use cortex_m::asm;
 use frixel_board::hardware::{self, Watchdog as _};

@@ -30,7 +30,7 @@ pub struct MainLoop<H: Hardware> {
 }
 
 impl<H: Hardware> MainLoop<H> {
-    /// Runs the loop for ever, with the board's own touch source, which returns a report if it has one.
+    /// Runs the loop forever, with the board's own touch source, which returns a report if it has one.
     #[inline]
     pub fn run(mut self, mut next_touch: impl FnMut() -> Option<Touch>) -> ! {
         loop {

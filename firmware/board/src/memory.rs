@@ -38,7 +38,7 @@ pub struct Memory {
 
 impl Memory {
     /// Empty memory.
-    #[allow(clippy::new_without_default, reason = "it belongs in a static, not into a value made in passing")]
+    #[allow(clippy::new_without_default, reason = "it belongs in a static, not on the stack")]
     pub const fn new() -> Self {
         Self { playing: Active::new(), next: NextScene::new(), session: MaybeUninit::uninit(), queues: Queues::new() }
     }

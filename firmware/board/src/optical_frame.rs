@@ -28,7 +28,7 @@ const STOP_MS: u32 = 1;
 /// be measured at bring-up.
 const AGE_MS: u32 = 10;
 
-/// Runs the main loop for ever with the frame on `port`, whose data-ready line is `data_ready`.
+/// Runs the main loop forever with the frame on `port`, whose data-ready line is `data_ready`.
 pub fn run<H: Hardware, P: I2cPort>(main_loop: MainLoop<H>, port: P, data_ready: impl InputPin) -> ! {
     let time = TickTime { shared: main_loop.shared, tick_hz: H::TICK_HZ };
     let reports = Reports::new(None);

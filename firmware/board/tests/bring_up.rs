@@ -21,7 +21,7 @@ const CHECKS: [Check; 7] =
 /// More polls of an input than any test needs.
 const POLLS_MAX: u32 = 10_000;
 
-/// What happened, in this order.
+/// Events, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Event {
     Checked(Check),
@@ -35,8 +35,8 @@ enum Event {
     Stored(BoardLimits),
 }
 
-/// The payload of the panic that ends a script that waits for ever.
-struct WaitsForEver;
+/// The payload of the panic that ends a script that waits forever.
+struct WaitsForever;
 
 /// A defect of the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,12 +97,12 @@ impl TestBench {
         }
     }
 
-    /// Runs the script. Returns its end, or `None` if it waits for ever.
+    /// Runs the script. Returns its end, or `None` if it waits forever.
     fn bring_up(&mut self) -> Option<Result<BoardLimits, Stop>> {
         let limits = self.limits;
         match catch_unwind(AssertUnwindSafe(|| run(self, &limits))) {
             Ok(result) => Some(result),
-            Err(thrown) if thrown.is::<WaitsForEver>() => None,
+            Err(thrown) if thrown.is::<WaitsForever>() => None,
             Err(thrown) => resume_unwind(thrown),
         }
     }
@@ -110,7 +110,7 @@ impl TestBench {
     fn poll(&mut self) {
         self.polls += 1;
         if self.polls > POLLS_MAX {
-            resume_unwind(Box::new(WaitsForEver));
+            resume_unwind(Box::new(WaitsForever));
         }
     }
 
@@ -265,7 +265,7 @@ fn reading(what: &str, output: TestOutput, switch_closed: bool, probe_v: f32) ->
         what if what.contains("probe") => probe_v.to_string(),
         what if what.contains("at the capacitor") => "44.5".to_owned(),
         what if what.contains("at the monitor") => " 8.5 ".to_owned(),
-        what => panic!("nobody knows this: {what}"),
+        what => panic!("no answer to: {what}"),
     }
 }
 
@@ -302,13 +302,13 @@ fn a_good_board_is_driven_up_to_its_limit_and_its_measured_limits_are_stored() {
 }
 
 #[test]
-fn a_bouncing_contact_is_no_wrong_input() {
+fn a_bouncing_contact_is_not_a_wrong_input() {
     let mut bench = TestBench { defect: Some(Defect::Bouncing), ..TestBench::new() };
     assert!(bench.bring_up().unwrap().is_ok());
 }
 
 #[test]
-fn voltages_rise_by_25_v_at_most_up_to_the_limit_that_was_built_in() {
+fn voltages_rise_by_25_v_at_most_up_to_the_built_in_limit() {
     for (max_v, expected) in [
         (5.0, vec![5.0, 5.0]),
         (10.0, vec![10.0, 10.0]),
@@ -323,7 +323,7 @@ fn voltages_rise_by_25_v_at_most_up_to_the_limit_that_was_built_in() {
 }
 
 #[test]
-fn a_wrong_reading_stops_whatever_is_asked() {
+fn a_wrong_reading_stops_at_every_question() {
     let good = brought_up();
     let mut readings = 0;
     for (index, (question, answer)) in good.questions.iter().zip(&good.answers).enumerate() {
@@ -347,7 +347,7 @@ fn a_wrong_reading_stops_whatever_is_asked() {
 }
 
 #[test]
-fn text_that_is_no_number_is_asked_again() {
+fn a_question_answered_without_a_number_is_asked_again() {
     let good = brought_up();
     for number in 1..=good.asked {
         for wrong in ["", "NaN", "inf", "ten", "1e400", "1 2", "\u{b5}"] {
@@ -379,7 +379,7 @@ fn limits_that_cannot_be_stored_stop_before_anything_else() {
 /// One of two resistors is shorted, the capacitor is 20 % large, and the amplifier is fast or slow. The edges reveal
 /// the wrong resistance even without a reading of the ohmmeter.
 #[test]
-fn a_series_resistance_that_is_not_the_built_in_one_stops_at_the_ohmmeter_and_at_the_edges() {
+fn a_wrong_series_resistance_stops_at_the_ohmmeter_and_at_the_edges() {
     let good = brought_up();
     for (what, answer, stops) in [
         ("series resistor R1", "0.1", true),
@@ -461,7 +461,7 @@ fn a_monostable_or_a_second_pole_that_does_not_disable_the_amplifier_stops() {
         ("ENABLE_LOGIC with both, V", "0"),
         // The monostable takes no trigger before its pulse is over.
         ("ENABLE_LOGIC with both: falling edges in a second, by an oscilloscope", "1400"),
-        // The monostable waits ten times as long as it may.
+        // The monostable's pulse is ten times too long.
         ("ENABLE_LOGIC, its mean with one SYNC every 2 ms, V", "3.3"),
         // The switch's second pole is bridged.
         ("ENABLE, switch released, ENABLE_LOGIC high, V", "3.3"),
@@ -498,10 +498,10 @@ fn a_fault_ends_the_script_and_no_voltage_follows() {
 }
 
 #[test]
-fn a_higher_voltage_follows_only_a_right_monitor() {
+fn a_higher_voltage_follows_only_a_correct_monitor() {
     for (number, peak_v) in [(1, 10.0), (2, 25.0), (3, 50.0), (4, 25.0)] {
         for wrong in [
-            // Dead, one half dead, a wrong gain, an offset, charge that stays, another voltage than the one wanted.
+            // Dead, one half dead, a wrong gain, an offset, charge that stays, a wrong voltage.
             Reading { high_v: 0.0, low_v: 0.0, ..good(peak_v) },
             Reading { low_v: 0.0, ..good(peak_v) },
             Reading { high_v: 1.25 * peak_v, low_v: -1.25 * peak_v, ..good(peak_v) },
@@ -535,7 +535,7 @@ fn a_probe_that_contradicts_drive_or_monitor_stops() {
 /// The touch bound has a margin for deviations of amplifier and resistor from the values assumed by the firmware. Probe
 /// and monitor may be misread, but not both by more than 4 % too low.
 #[test]
-fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typed() {
+fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_for_any_readings() {
     const RESISTOR_MIN: f32 = 0.99 / 1.005;
     let good = brought_up();
     let number = 1 + good.questions.iter().rposition(|question| question.contains("probe's")).unwrap() as u32;
@@ -559,7 +559,7 @@ fn the_stored_full_scale_is_within_the_margin_of_the_touch_bound_whatever_is_typ
 
 /// The clip of a mains-powered oscilloscope ties the common to earth, which hides a missing isolator.
 #[test]
-fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after_them() {
+fn rails_and_isolation_are_measured_before_and_after_the_probes() {
     let bench = brought_up();
     let orders = [
         "measure each rail",
@@ -582,7 +582,7 @@ fn rails_and_isolation_are_measured_before_the_probes_of_the_amplifier_and_after
 /// The script checks the largest full scale that readings may give before it begins. Behind 44 kOhm an amplifier of
 /// gain 20 may be stuck at its rail, and one of the largest gain that the script accepts may not.
 #[test]
-fn a_series_resistance_that_a_large_gain_would_make_too_small_stops_before_anything_else() {
+fn a_series_resistance_too_small_for_the_largest_gain_stops_before_anything_else() {
     for (series_ohm, is_taken) in [(44e3, false), (48e3, true)] {
         let behind = Board { limits: LIMITS, ..Board::NUCLEO_G474RE }.behind(series_ohm).limits;
         let limits = BoardLimits { voltage_max_v_peak: LIMITS.voltage_max_v_peak, ..behind };

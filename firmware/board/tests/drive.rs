@@ -62,7 +62,7 @@ fn driven(board: &Board) -> (usize, i16) {
 }
 
 #[test]
-fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor_by_a_main_loop_of_any_speed() {
+fn a_voltage_is_driven_and_read_on_the_monitor_at_any_main_loop_speed() {
     for (peak_v, round_ticks) in [(10.0, ROUND_TICKS), (25.0, 1), (50.0, 7), (50.0, 24)] {
         let mut board = pressed();
         let reading = drive(&mut board, peak_v, round_ticks, GOOD).unwrap();
@@ -80,7 +80,7 @@ fn a_voltage_is_driven_through_the_firmware_and_read_on_the_monitor_by_a_main_lo
 
 /// The host's credit, some 4,096 bytes, does not run out.
 #[test]
-fn one_drive_after_the_other_is_heard() {
+fn repeated_drives_do_not_run_out_of_credit() {
     let mut board = pressed();
     for _ in 0..12 {
         assert!(drive(&mut board, 10.0, ROUND_TICKS, GOOD).is_ok());
@@ -122,7 +122,7 @@ fn a_main_loop_that_hangs_ends_the_drive() {
     (0..40_000).for_each(|_| run_tick());
     let (ticks, _) = driven(&board);
     assert!(ticks <= REPORT_MAX_TICKS as usize, "{ticks}");
-    // It goes on too late. The status in the queue is that of the first tick without it.
+    // It continues too late. The status in the queue is that of the first tick without it.
     let result = (0..3).find_map(|_| round(&mut board, &mut drive, ROUND_TICKS));
     assert_eq!(result, Some(Err(DriveError::State(State::Disarmed))));
     assert_eq!(driven(&board), (0, 0));

@@ -12,7 +12,7 @@ use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
 const STACK: std::ops::Range<u32> = 0x2000_0000..0x2000_4800;
 
-/// What the processor did, in order.
+/// Actions of the processor, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     InterruptsOff,
@@ -102,7 +102,7 @@ fn a_second_fault_while_the_first_is_stored_resets_at_once() {
 }
 
 #[test]
-fn the_frame_of_a_hard_fault_is_read_only_inside_of_the_stack() {
+fn the_frame_of_a_hard_fault_is_read_only_inside_the_stack() {
     let outside = || -> FaultRegisters { panic!("there is no frame to read") };
     let overflow = (Fault::StackOverflow, "the stack overflowed");
     let left = (Fault::HardFault, "the stack pointer left the stack");
@@ -128,7 +128,7 @@ fn the_frame_of_a_hard_fault_is_read_only_inside_of_the_stack() {
 }
 
 #[test]
-fn a_panic_and_an_unhandled_interrupt_say_where() {
+fn a_panic_and_an_unhandled_interrupt_report_their_place() {
     let here = Location::caller();
     let (_, last_reset) = ended(|ending| ending.panic(Some(here)));
     assert_eq!(last_reset.fault, Some((Fault::Panic, here.line())));
@@ -142,7 +142,7 @@ fn a_panic_and_an_unhandled_interrupt_say_where() {
 /// A watchdog reset stores no fault, so the processor's reset cause is reported. A stored fault takes precedence, since
 /// it is closer to the reason.
 #[test]
-fn the_watchdog_is_a_fault_of_its_own() {
+fn a_reset_by_the_watchdog_is_a_fault_unless_another_is_recorded() {
     let record = FaultRecord::new();
     let hung = next_start(&record, ResetCause::Watchdog);
     assert_eq!(hung.fault, Some((Fault::Watchdog, 0)));

@@ -1,4 +1,4 @@
-//! The main loop of every board: the DAC's checks, the watchdog, the serial port, and what counts time.
+//! The main loop of every board: the DAC's checks, the watchdog, the serial port, and the measurement of time.
 
 use embedded_io::ErrorKind;
 use frixel_wire::dac_code::DacCode;

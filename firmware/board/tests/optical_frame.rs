@@ -42,7 +42,7 @@ impl ReadLevel for Low {
 
 /// An unpowered frame is polled again every 0.1 s, in ticks, and the main loop never waits for it.
 #[test]
-fn a_frame_that_does_not_answer_is_asked_again_after_a_tenth_of_a_second() {
+fn a_silent_frame_is_polled_again_after_a_tenth_of_a_second() {
     let board = Board::new();
     let shared: &'static TickShared = board.shared;
     let (asked, errors) = (Rc::new(Cell::new(0)), Cell::new(0));
@@ -189,7 +189,7 @@ fn a_transfer_stops_the_peripheral_before_and_after() {
 }
 
 #[test]
-fn what_the_module_never_needs_is_refused_untold() {
+fn unneeded_transactions_are_refused_without_bus_activity() {
     let too_long = [0; MESSAGE_MAX_LEN + 1];
     let refused = (Err(BusError::Unsupported), vec![], 0);
     assert_eq!(transaction(port(), &mut []), refused);
@@ -200,7 +200,7 @@ fn what_the_module_never_needs_is_refused_untold() {
 
 /// A transfer that does not end is aborted after 6 ms. The bus is released.
 #[test]
-fn a_transfer_that_fails_or_does_not_end_is_given_up_with_its_error() {
+fn a_transfer_that_fails_or_does_not_end_is_abandoned_with_its_error() {
     let (acknowledge, arbitration) = (BusError::NoAcknowledge, BusError::ArbitrationLoss);
     for (polled, error, expected_ticks) in [
         (Poll::Ready(Err(acknowledge)), acknowledge, 0),

@@ -58,7 +58,7 @@ impl Uart for Wire {
 }
 
 #[test]
-fn a_write_waits_until_the_uart_takes_a_byte_and_begins_with_what_it_takes() {
+fn a_write_waits_for_the_uart_and_sends_what_it_accepts() {
     let wire = Wire::new();
     let mut port = SerialPort::new(wire.clone());
     assert_eq!((port.write(b""), port.write(b"longer"), port.write(b"er")), (Ok(0), Ok(4), Ok(2)));
@@ -67,7 +67,7 @@ fn a_write_waits_until_the_uart_takes_a_byte_and_begins_with_what_it_takes() {
 }
 
 #[test]
-fn a_terminal_echoes_a_line_and_forgets_what_came_before_it_was_asked() {
+fn a_terminal_echoes_a_line_and_discards_earlier_input() {
     let wire = Wire::new();
     let mut terminal = Terminal::new(SerialPort::new(wire.clone()));
     wire.receive(b"too early");
@@ -81,7 +81,7 @@ fn a_terminal_echoes_a_line_and_forgets_what_came_before_it_was_asked() {
 }
 
 #[test]
-fn a_terminal_on_a_port_that_fails_goes_on() {
+fn a_terminal_on_a_failing_port_continues() {
     let wires = wires();
     wires.port.set(Err(ErrorKind::Other));
     let mut terminal = Terminal::new(Part(wires));

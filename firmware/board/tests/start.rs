@@ -46,7 +46,7 @@ fn the_dac_is_prepared_once_and_a_missing_one_is_no_fault_yet() {
 }
 
 #[test]
-fn a_board_without_stored_limits_has_the_built_in_ones_and_one_with_damaged_ones_a_notice_beside_its_own() {
+fn missing_or_damaged_limits_become_the_built_in_ones_and_only_damaged_ones_set_a_notice() {
     let refused = notice::OPTION_BYTES | notice::STORED_LIMITS_REFUSED;
     for (flash, notices) in
         [(None, notice::OPTION_BYTES), (Some(Filled(0xff)), notice::OPTION_BYTES), (Some(Filled(0x55)), refused)]

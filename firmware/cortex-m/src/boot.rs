@@ -20,7 +20,7 @@ impl Boot {
 }
 
 /// Panics in a state that cannot occur. A panic sets the output to zero and resets.
-#[allow(clippy::panic, clippy::missing_panics_doc, reason = "there is nothing to go on with")]
+#[allow(clippy::panic, clippy::missing_panics_doc, reason = "there is no way to continue")]
 pub fn unreachable_state() -> ! {
     panic!("a static was taken twice")
 }

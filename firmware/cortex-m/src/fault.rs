@@ -198,7 +198,7 @@ fn status() -> Option<(u32, u32)> {
 /// content is valid.
 pub fn retained<T: Sync>(place: &'static T) -> &'static T {
     #[cfg(target_arch = "arm")]
-    // SAFETY: no instruction. For all that the compiler knows, it writes the place.
+    // SAFETY: no instruction. no instruction, but the compiler must assume that it writes the place.
     unsafe {
         asm!("/* {} */", in(reg) place, options(nostack, preserves_flags));
     }

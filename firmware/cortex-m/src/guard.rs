@@ -49,7 +49,7 @@ unsafe fn set_region(mpu: &mut MPU) {
 }
 
 /// Sets the region to read-only and no execution: an `ARMv8-M` cannot forbid reads, and a stack overflows with a write.
-/// Compiled, but not run (`ARMv8-M` Architecture Reference Manual, `MPU_RBAR` and `MPU_RLAR`, unread).
+/// Compiled, but not run (`ARMv8-M` Architecture Reference Manual, `MPU_RBAR` and `MPU_RLAR`, not read).
 ///
 /// # Safety
 /// The guard is not memory of this program.

@@ -44,7 +44,7 @@ impl<T> Owned<T> {
     /// Gives the value to the handler.
     ///
     /// # Safety
-    /// Nothing else than this function gives to this place.
+    /// Only this function gives a value to this place.
     #[inline]
     pub(crate) unsafe fn give_once(&self, _: Boot, value: T) {
         // SAFETY: there is one `Boot`, and it ends here, so this is the first call; and no other function gives.
@@ -65,26 +65,26 @@ impl<T> Owned<T> {
     ///
     /// # Safety
     /// Only the handler that owns the value calls this, once per run, and keeps no reference beyond that run.
-    #[allow(clippy::mut_from_ref, reason = "the handler is the one owner, says the caller")]
+    #[allow(clippy::mut_from_ref, reason = "the caller guarantees that the handler is the only owner")]
     pub unsafe fn get(&self) -> Option<&mut T> {
         // SAFETY: it was given, and is not written again. A handler does not interrupt itself, so this is the only
         // reference.
-        self.is_given.load(Ordering::Acquire).then(|| unsafe { (*unnamed(self.value.get())).assume_init_mut() })
+        self.is_given.load(Ordering::Acquire).then(|| unsafe { (*opaque(self.value.get())).assume_init_mut() })
     }
 }
 
 /// Returns a pointer whose value is unknown to the compiler. Otherwise it may write the address, as a constant, into
 /// every function of the tick, which costs an `ARMv6-M` 500 bytes more than a register.
 #[inline]
-fn unnamed<T>(pointer: *mut T) -> *mut T {
+fn opaque<T>(pointer: *mut T) -> *mut T {
     #[cfg(target_arch = "arm")]
     {
-        let unnamed;
+        let opaque;
         // SAFETY: no instruction. It accesses nothing.
         unsafe {
-            core::arch::asm!("/* {} */", inout(reg) pointer => unnamed, options(nomem, nostack, preserves_flags));
+            core::arch::asm!("/* {} */", inout(reg) pointer => opaque, options(nomem, nostack, preserves_flags));
         }
-        unnamed
+        opaque
     }
     #[cfg(not(target_arch = "arm"))]
     pointer

@@ -134,7 +134,7 @@ mod tests {
 
     /// Longest time, in seconds, from the opening of the contact until the DAC has the zero, with the wire's filter of
     /// `docs/board/hardware.md`: the voltage at the pin falls from that of the divider to the level that is low for
-    /// certain, 0.3 of the supply (DS12288, "I/O static characteristics", unread).
+    /// certain, 0.3 of the supply (DS12288, "I/O static characteristics", not read).
     fn off_after_s(series_ohm: f64, down_ohm: f64, capacitance_f: f64) -> f64 {
         let high = down_ohm / (down_ohm + series_ohm);
         let discharge_s = down_ohm * capacitance_f * (high / 0.3).ln();

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_later_record_takes_the_place_of_an_earlier_one() {
+    fn a_later_record_replaces_an_earlier_one() {
         let record = FaultRecord::new();
         record.save(Fault::Panic, 1, &mut |text| _ = text.text("a long first text"));
         record.save(Fault::Watchdog, 2, &mut |text| _ = text.text("short"));

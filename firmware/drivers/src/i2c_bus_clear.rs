@@ -2,7 +2,7 @@
 //!
 //! A reset in the middle of a transfer leaves the target waiting for clocks, with SDA low if its current bit or
 //! acknowledgement is zero. The controller then cannot begin a transfer. According to NXP's UM10204, section 3.1.16,
-//! "Bus clear" (unread), the controller sends clock pulses, and the target releases SDA within nine.
+//! "Bus clear" (not read), the controller sends clock pulses, and the target releases SDA within nine.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal_async::delay::DelayNs;

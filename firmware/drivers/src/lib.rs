@@ -18,7 +18,7 @@
 //! | [`fault_record`] | the last fault, kept in RAM over a reset | |
 //! | [`i2c_bus_clear`] | freeing an I2C bus whose data line is held low | `OutputPin`, `InputPin`, `DelayNs` |
 //! | [`i2c_fifo`] | transfers over the FIFOs of the I2C of the RP2040 and RP2350 | |
-//! | [`stm32g4`], [`rp2`] | meaning of registers of the STM32G4, and of the RP2040 and RP2350 | |
+//! | [`stm32g4`], [`rp2`] | interpretation of registers of the STM32G4, and of the RP2040 and RP2350 | |
 //! | [`pio`] | instructions of the programmable I/O of the RP2040 and RP2350 | |
 //!
 //! With the feature `defmt`, the errors implement `defmt::Format`.

@@ -16,11 +16,11 @@ pub struct Instruction(u16);
 pub enum Condition {
     /// Always.
     Always = 0,
-    /// Register X is not zero; it is then decremented in any case.
+    /// Register X is not zero. X is decremented in either case.
     XNotZeroDecrement = 2,
     /// Register Y is zero.
     YZero = 3,
-    /// Register Y is not zero; it is then decremented in any case.
+    /// Register Y is not zero. Y is decremented in either case.
     YNotZeroDecrement = 4,
 }
 
@@ -157,7 +157,7 @@ mod tests {
 
     /// Instructions with published encodings: the example programs of the data sheet, with the assembler's output.
     #[test]
-    fn words_are_those_of_the_assembler() {
+    fn words_match_the_assembler() {
         for (instruction, word) in [
             // `out x, 1 side 0 [2]`, `jmp bitloop side 1 [4]` at address 0 (3.6.2, "WS2812 LEDs").
             (shift_out(Destination::X, 1).delay(2).side(0, 1), 0x6221),
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "fewer bits")]
-    fn a_delay_that_the_side_set_pins_leave_no_room_for_is_refused() {
+    fn a_delay_without_room_beside_the_side_set_pins_is_refused() {
         let _ = set(Destination::Y, 0).delay(8).side(0, 2);
     }
 }

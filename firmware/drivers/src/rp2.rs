@@ -1,5 +1,5 @@
-//! Meaning of registers of the RP2040 and the RP2350, as pure functions for tests without the processor. Also the
-//! location of the limits in the flash, for tools that write them in advance.
+//! Interpretation of the registers of the RP2040 and the RP2350, as pure functions that tests can call without the
+//! processor. Also the location of the limits in the flash, for tools that write them in advance.
 
 use frixel_wire::hello::ResetCause;
 
@@ -50,7 +50,7 @@ mod tests {
 
     /// The chip's own flags survive a reset by the watchdog, so the watchdog's flag takes precedence.
     #[test]
-    fn the_watchdog_decides_before_the_chips_own_flags() {
+    fn the_watchdog_takes_precedence_over_the_chips_own_flags() {
         let power_on = ResetFlags { power_on: true, ..NONE };
         let run_pin = ResetFlags { run_pin: true, ..NONE };
         for (flags, ram_survived, cause) in [

@@ -1,5 +1,5 @@
-//! Meaning of registers of the STM32G4, as pure functions for tests without the processor. RM0440 is the reference
-//! manual.
+//! Interpretation of the STM32G4's registers, as pure functions that tests can call without the processor. RM0440 is
+//! the reference manual.
 
 use frixel_wire::hello::ResetCause;
 
@@ -36,10 +36,10 @@ const ECC_NOT_CORRECTED: u32 = 1 << 31;
 ///
 /// While a store is read (`reading_store`), the bank stated by `FLASH_ECCR` does not matter: the register's content may
 /// be corrupt after a reset or a loss of power during programming, which is when such words arise (errata sheet ES0430,
-/// on `FLASH_ECCR` after a reset or power-down during programming or erasing, unread).
+/// on `FLASH_ECCR` after a reset or power-down during programming or erasing, not read).
 ///
-/// An error of the image's own flash in that time thus counts as the store's: the read fails, and the processor's own
-/// fetches are left to the fault handlers.
+/// An error in the image's own flash during that time therefore counts as one of the store, and the read fails; errors
+/// in the processor's own fetches are left to the fault handlers.
 pub const fn is_store_ecc_error(flash_eccr: u32, reading_store: bool) -> bool {
     flash_eccr & ECC_NOT_CORRECTED != 0 && (reading_store || flash_eccr & ECC_IN_BANK_2 != 0)
 }
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ecc_error_during_a_read_of_the_store_is_the_stores_whatever_the_bank_bit_says() {
+    fn an_ecc_error_while_reading_the_store_counts_as_the_stores_for_any_bank_bit() {
         for noise in [0, u32::MAX >> 1] {
             for bank in [0, ECC_IN_BANK_2] {
                 let eccr = noise & !ECC_IN_BANK_2 | bank;
@@ -85,11 +85,11 @@ mod tests {
         }
     }
 
-    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, unread).
+    /// The factory's option bytes of the STM32G474 (RM0440, "Option bytes": `0xffef_f8aa`, not read).
     const FACTORY: u32 = 0xffef_f8aa;
 
     #[test]
-    fn the_factorys_option_bytes_are_right_once_the_documented_command_has_set_two() {
+    fn the_documented_command_makes_the_factory_option_bytes_right() {
         let set = FACTORY & !(BROWN_OUT_LEVEL | SOFTWARE_WATCHDOG) | BROWN_OUT_LEVEL_4;
         assert!(option_bytes_are_right(set) && !option_bytes_are_right(FACTORY));
         assert!(!option_bytes_are_right(set | SOFTWARE_WATCHDOG));

@@ -7,7 +7,7 @@ use super::dialogue::{ask, await_inputs, confirm, expect_inputs};
 use super::script::{CLOSED, DONE, IDLE, PULL_DOWN_KOHM, READY, check};
 use super::{Bench, Check, Stop};
 
-/// Least resistance between the board's ground and protective earth: more than any connection, less than an isolator.
+/// Least resistance between the board's ground and protective earth: more than any connection, less than any isolator.
 const ISOLATION_MIN_MOHM: f32 = 10.0;
 
 /// Smallest and largest ratio of each half of the series resistance, measured by an ohmmeter of 0.5 %, to the built-in
@@ -18,7 +18,7 @@ const SERIES_RATIO: (f32, f32) = (0.99, 1.02);
 /// Resistance between the two sides of the switch's second pole while it is closed, Ohm.
 const CLOSED_POLE_OHM: (f32, f32) = (-1.0, 100.0);
 
-/// Ready follows the amplifier's supply, and the tick runs with the output at zero.
+/// Checks that ready follows the amplifier's supply, and that the tick runs with the output at zero.
 pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) -> Result<(), Stop> {
     bench.say(format_args!("4. The amplifier, with its supply off."));
     check_rails(bench);
@@ -75,8 +75,8 @@ pub(super) fn check_isolation(bench: &mut impl Bench) -> Result<(), Stop> {
 }
 
 /// Checks that the amplifier's enable, which was unplugged for the previous step, is connected after the switch's
-/// second pole. Before the pole, everything would work as well, but the switch would no longer stop the amplifier by
-/// itself.
+/// second pole. Connected before the pole, everything would still work, but the switch would no longer stop the
+/// amplifier by itself.
 fn check_plug(bench: &mut impl Bench) -> Result<(), Stop> {
     ask(bench, "released: ENABLE_LOGIC to ENABLE at the amplifier's own terminal, kOhm", PULL_DOWN_KOHM)?;
     await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;

@@ -1,7 +1,7 @@
 //! The part of the script that tests how the amplifier is disabled without the firmware: by the monostable outside the
-//! processor, which SYNC triggers, and by the arm switch's second pole. Nothing else would reveal a bridged one, since
-//! everything works without them. The amplifier cannot be enabled meanwhile: its enable and its ready are unplugged,
-//! and the DAC is at zero.
+//! processor, which SYNC triggers, and by the arm switch's second pole. Only this test reveals a bridged one, since
+//! everything works without them. The amplifier cannot be enabled during the test: its enable and its ready are
+//! unplugged, and the DAC is at zero.
 
 use super::dialogue::{ask_while, await_inputs, confirm, expect_inputs};
 use super::script::{CLOSED, DONE, IDLE, check};

@@ -65,12 +65,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_wrong_can_be_erased() {
+    fn typing_errors_can_be_erased() {
         assert_eq!(lines(b"\x7f12\x083\x7f\x7f4\r"), ["4"]);
     }
 
     #[test]
-    fn noise_and_what_is_too_long_are_no_text() {
+    fn noise_and_excess_characters_are_ignored() {
         assert_eq!(lines(b"\x00\xff\x1b1\xc2\xb50\t\r"), ["10"]);
         assert_eq!(lines(&[&[b'1'; 99][..], b"\r"].concat()), ["1".repeat(crate::bring_up::LINE_MAX_LEN)]);
     }

@@ -119,7 +119,7 @@ impl From<DriveError> for Stop {
 #[derive(Debug)]
 pub struct Pressed(());
 
-/// Neither ready nor switch.
+/// The amplifier is off, and the switch is released.
 pub(super) const IDLE: Inputs = Inputs { amplifier_ready: false, switch_closed: false };
 /// The amplifier is on.
 pub(super) const READY: Inputs = Inputs { amplifier_ready: true, ..IDLE };

@@ -124,8 +124,8 @@ mod tests {
     }
 
     proptest! {
-        /// A byte that is lost, doubled or changed costs at most the two blocks that it is between. The byte at 0 ends
-        /// what was on the line before, so that nothing is lost with it.
+        /// A lost, doubled or changed byte damages at most two adjacent blocks. The byte at 0 only ends earlier data,
+        /// so its loss costs nothing.
         #[test]
         fn a_disturbed_byte_is_counted(at in 1_usize..1500, kind in 0..3) {
             let mut sent = bytes(4000);

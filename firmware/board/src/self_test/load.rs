@@ -11,7 +11,7 @@ use crate::local_host::{LocalHost, Progress};
 use crate::local_scene::{header, scene, scene_len};
 
 /// Peak voltage of the scene, V. The wires simulate the monitor of an amplifier at 0 V, up to 4 V off. The supervisor
-/// accepts deviations of 8 V and 25 % of the driven voltage, and judges no gain below 4 V rms.
+/// accepts deviations of 8 V and 25 % of the driven voltage, and checks no gain below 4 V rms.
 const PEAK_V: f32 = 3.0;
 /// Largest electric friction of a layer, N, of the size reached at [`PEAK_V`], so that the tick looks up voltages.
 const HIGH_N: f32 = 9e-6;

@@ -119,7 +119,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn only_what_is_in_its_range_passes() {
+    fn only_values_in_range_pass() {
         let measured = |found| Measurement { name: "clocks", found, range: Some((24, 25)) };
         assert_eq!([23, 24, 25, 26].map(|found| measured(found).passes()), [false, true, true, false]);
         assert!(Measurement { range: None, ..measured(0) }.passes());
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn text_for_the_person_is_no_measurement() {
+    fn text_for_the_person_is_not_a_measurement() {
         for line in ["", "1. Connect the wires.", "measured", "measured it", "measured a b 0..1 ok", "histogram x 1 2"]
         {
             assert_eq!(ScriptLine::parse(line), None, "{line}");
@@ -136,7 +136,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_said_is_read(
+        fn every_line_is_parsed_back(
             name in "[a-z_0-9]{1,40}",
             found: u32,
             range: Option<(u32, u32)>,

@@ -356,17 +356,17 @@ fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Cou
 fn exchange_blocks<B: LoopedBoard>(board: &mut B, load: &mut Load, test: &mut LineTest) -> Result<(), Stop> {
     let (first_byte_ticks, last_byte_ticks) = (board.board().ticks(FIRST_BYTE_S), board.board().ticks(LAST_BYTE_S));
     load.round(board)?;
-    let mut heard_at_tick = load.now_tick();
+    let mut received_at_tick = load.now_tick();
     loop {
         load.round(board)?;
         let mut bytes = [0; CHUNK_LEN];
         let len = board.read(&mut bytes);
         test.take(bytes.get(..len).unwrap_or_default());
         if len > 0 {
-            heard_at_tick = load.now_tick();
+            received_at_tick = load.now_tick();
         }
         let patience_ticks = if test.received() > 0 { last_byte_ticks } else { first_byte_ticks };
-        if load.now_tick().wrapping_sub(heard_at_tick) > patience_ticks {
+        if load.now_tick().wrapping_sub(received_at_tick) > patience_ticks {
             break;
         }
         let taken = board.write(test.pending());

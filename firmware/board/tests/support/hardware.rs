@@ -1,4 +1,4 @@
-//! A board of plain values, whose tick runs when a test says so.
+//! A board of plain values, whose tick runs when a test calls it.
 
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;

@@ -97,7 +97,7 @@ mod tests {
 
     /// The control register bit by bit, as the data sheet's table lists them from bit 10 down.
     #[test]
-    fn the_configuration_is_that_of_the_data_sheet() {
+    fn the_configuration_matches_the_data_sheet() {
         let fields = [
             (0b01, 2), // CV: clear to midscale
             (0, 1),    // OVR: no overrange

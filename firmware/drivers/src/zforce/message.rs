@@ -37,14 +37,14 @@ const M_PER_UNIT: f32 = 1e-4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Touch {
-    /// A finger at this place, in metres from the sensor's own corner.
+    /// A finger, located from the sensor's own corner.
     Down {
-        /// Along the sensor.
+        /// Distance along the sensor, m.
         x_m: f32,
-        /// Away from it.
+        /// Distance from the sensor, m.
         y_m: f32,
     },
-    /// The finger has gone.
+    /// The finger was lifted.
     Up,
 }
 

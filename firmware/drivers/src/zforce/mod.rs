@@ -42,7 +42,7 @@ pub enum Error<E> {
     I2c(E),
     /// The data-ready pin could not be read.
     DataReady,
-    /// There are always more messages, however many are read.
+    /// More messages keep waiting, no matter how many are read.
     Waiting,
     /// Invalid header: expected `ee` and a length from 1 to 127.
     Length([u8; LENGTH_LEN]),

@@ -33,8 +33,8 @@ pub(crate) struct NucleoBench {
     pub(crate) stage: Stage,
 }
 
-/// Who owns the output.
-#[allow(clippy::large_enum_variant, reason = "there is one, in the only frame that never ends")]
+/// Owner of the output.
+#[allow(clippy::large_enum_variant, reason = "there is only one, in the frame of `main`")]
 pub(crate) enum Stage {
     /// The script itself, with the amplifier off.
     Still(Still),

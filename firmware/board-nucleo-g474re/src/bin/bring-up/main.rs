@@ -62,7 +62,7 @@ fn main() -> ! {
         terminal.say(format_args!("Before step 4: {}.", Refusal::OptionBytes));
     }
     let flash = BankTwo::new();
-    // A capacitor stands in for the electrode, and nobody touches it: the script asks for that before any voltage.
+    // A capacitor replaces the electrode, and is not touched: the script asks for that before any voltage.
     let untouched = BoardLimits { series_resistance_ohm: f32::INFINITY, ..limits };
     let board = Board { limits: untouched, ..board::board(&last_reset, None) };
     let stage = Stage::Still(Still { memory: MEMORY, boot, output, period, inputs, frames, dac, periods: 0 });

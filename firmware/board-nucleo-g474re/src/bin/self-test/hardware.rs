@@ -15,7 +15,7 @@ use frixel_wire::dac_code::DacCode;
 /// Simulated contact of the arm switch, as the tick reads it.
 pub(crate) static SWITCH_HELD: AtomicBool = AtomicBool::new(false);
 
-/// The parts.
+/// The parts of the self-test's tick and main loop.
 pub(crate) struct Wired;
 
 impl Hardware for Wired {

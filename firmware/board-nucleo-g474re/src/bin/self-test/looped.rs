@@ -32,8 +32,8 @@ pub(crate) struct Looped {
     pub(crate) stage: Stage,
 }
 
-/// Who owns the pins.
-#[allow(clippy::large_enum_variant, reason = "there is one, in the only frame that never ends")]
+/// Owner of the pins.
+#[allow(clippy::large_enum_variant, reason = "there is only one, in the frame of `main`")]
 pub(crate) enum Stage {
     /// The script itself.
     Still(Still),

@@ -47,7 +47,7 @@ fn main() -> ! {
     let adc = Adc::new(&boot);
     let captures = Captures::start();
     let stage = Stage::Still(Still { memory: MEMORY, boot, output, period, frames, captures, adc, spi });
-    // There is no amplifier: it arms whatever the option bytes are.
+    // There is no amplifier, so it arms regardless of the option bytes.
     let board = Board { notices: 0, ..board::board(&last_reset, None) };
     let mut looped = Looped { board, terminal, stage };
     if self_test::run(&mut looped).is_err() {
