@@ -77,12 +77,13 @@ impl Gain {
         self.drive = self.drive.wrapping_add(drive);
         self.square = self.square.wrapping_add((drive * drive).cast_unsigned());
         self.left_ticks -= 1;
-        self.left_ticks == 0 && self.is_faulty()
+        self.left_ticks == 0 && self.check()
     }
 
+    /// Returns whether the gain is faulty, and schedules the next check.
     #[cold]
     #[inline(never)]
-    fn is_faulty(&mut self) -> bool {
+    fn check(&mut self) -> bool {
         // The conversion saturates.
         let deviation = (self.deviation_v2.abs() * self.squares_per_v2) as u32;
         let offset = self.drive.wrapping_mul(self.offset).unsigned_abs();
