@@ -31,7 +31,6 @@ pub struct BoardMemory {
 impl BoardMemory {
     /// Memory as it is after a reset.
     #[must_use]
-    #[allow(clippy::large_stack_arrays, reason = "a desktop's stack has room for what is made in passing")]
     pub fn new() -> Box<Self> {
         let (playing, next) = (Active::new(), NextScene::new());
         Box::new(Self { pool: BitmapPool::new(), playing, next, stream: StreamBuffer::new() })

@@ -1,7 +1,7 @@
 //! The inverse table against the closed form, in the `f32` arithmetic of the device.
 #![allow(clippy::unwrap_used)]
 
-use frixel_model::{Contact, Finger, InverseTable, LoadedContact, TableError};
+use frixel_model::{Contact, Finger, InverseTable, LawPoint, LoadedContact, TableError};
 
 /// The example finger.
 const FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
@@ -46,6 +46,40 @@ fn example_finger_is_within_the_bound_at_every_f32() {
         let worst = worst_error(&contact, (1.0, 200.0), 1, |x| table.voltage_v_rms(x));
         println!("load {normal_load_n} N: {worst:e}");
         assert!(worst <= BOUND, "load {normal_load_n} N: {worst:e}");
+    }
+}
+
+#[test]
+fn an_empty_or_cleared_table_answers_zero() {
+    let mut cleared = InverseTable::build(&contact(0.5), 150.0).unwrap();
+    cleared.clear();
+    for table in [InverseTable::EMPTY, cleared] {
+        assert!(table.is_empty());
+        for x in (0..=u32::MAX).step_by(99_991).map(f32::from_bits).filter(|x| x.is_finite()) {
+            assert!(table.voltage_v_rms(x).abs() <= 0.0, "{x:e}");
+        }
+    }
+}
+
+/// A board fills the table of each scene over that of an earlier one.
+#[test]
+fn a_table_filled_over_another_is_a_fresh_one_and_a_refusal_changes_nothing() {
+    let finger = Finger { radius_m: 8e-3, stiffness_pa_per_m: 1.8e7, friction_coefficient: 0.5_f32 };
+    let points = [(50.0, 0.01), (150.0, 0.09)]
+        .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
+    for up_to_n in [f32::INFINITY, 0.02] {
+        let of_finger = InverseTable::of_finger(&finger, 1e-5, 0.5, 150.0, up_to_n).unwrap();
+        let of_law = InverseTable::of_law(2.0, &points, 150.0, up_to_n).unwrap();
+        let mut table = of_law.clone();
+        let mut filling = table.begin(&finger, 1e-5, 0.5, 150.0, up_to_n).unwrap();
+        while !filling.fill(&mut table, 3).unwrap() {}
+        assert_eq!(table, of_finger);
+        assert!(table.begin(&finger, 0.0, 0.5, 150.0, up_to_n).is_err());
+        assert!(table.begin_law(2.0, &[], 150.0, up_to_n).is_err());
+        assert_eq!(table, of_finger);
+        let mut filling = table.begin_law(2.0, &points, 150.0, up_to_n).unwrap();
+        while !filling.fill(&mut table, 3).unwrap() {}
+        assert_eq!(table, of_law);
     }
 }
 

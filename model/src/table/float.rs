@@ -50,7 +50,7 @@ impl RowGrid {
         f32::from_bits((u64::from(self.first_bits) + offset(row, self.density)) as u32)
     }
 
-    /// The row of a friction, or a number past the last row if the friction is outside.
+    /// The row of a friction, or a number past the last row if the friction is outside; zero in an empty grid.
     #[inline]
     pub(crate) fn row(&self, friction_n: f32) -> usize {
         // Below the range, the subtraction wraps to a large number; the bits of negative numbers and NaN are large

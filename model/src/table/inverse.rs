@@ -55,7 +55,8 @@ impl InverseTable {
     /// without load and 1.8e-6 under 0.5 N: `cargo test --release -p frixel-model -- --ignored --nocapture`.
     pub const RELATIVE_ERROR: f32 = 1e-5;
 
-    /// A table of zero volts for every friction. All its bits are zero, so that a static of it takes no flash.
+    /// An empty table: zero volts for every finite friction. All its bits are zero, so that a static of it takes no
+    /// flash.
     pub const EMPTY: Self = Self { grid: RowGrid::EMPTY, rows: [[0.0; 4]; ROWS] };
 
     /// Bytes of a row.
@@ -192,16 +193,16 @@ impl InverseTable {
         Ok(InverseTableFilling(Filling { curve: contact, rows: knee_row..end, start }))
     }
 
-    /// Makes the table [empty](Self::EMPTY), in a few instructions.
+    /// Empties the table, in a few instructions: later rows keep their numbers, and are not read.
     pub fn clear(&mut self) {
         self.grid = RowGrid::EMPTY;
-        // An empty grid leads to the first row, whatever the friction.
+        // An empty grid leads to the first row for every friction.
         if let Some(first) = self.rows.first_mut() {
             *first = [0.0; 4];
         }
     }
 
-    /// Whether the table is [empty](Self::EMPTY).
+    /// Whether the table is empty, as [`Self::EMPTY`] and after [`Self::clear`].
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.grid.is_empty()

@@ -39,6 +39,8 @@ enum Stage {
 
 impl Load {
     /// The largest scene accepted by `board`: its kinds of layers alternate, so that no code reliably stays in a cache.
+    // Not inlined, so that its records are on the stack only meanwhile.
+    #[inline(never)]
     pub(super) fn largest(board: &Board) -> Self {
         let header = header(PEAK_V);
         let mut records = Vec::<Record, LAYERS_MAX>::new();

@@ -148,6 +148,19 @@ fn a_slower_carrier_finishes_the_half_period_under_way() {
     assert_eq!((after.iter().position(|code| *code > 0), positive), (Some(3), 20));
 }
 
+/// Before its first scene, a board has no carrier.
+#[test]
+fn after_no_carrier_the_next_one_begins_at_its_crest() {
+    for waveform in WAVEFORMS {
+        let timing = timing(*waveform, 20);
+        let mut carrier = Carrier::new(&CarrierTiming::ZERO_OUTPUT);
+        carrier.reset_to_zero(&CarrierTiming::ZERO_OUTPUT);
+        carrier.retime(&timing);
+        let fresh = codes(&mut Carrier::new(&timing), &timing, 50.0, 80);
+        assert_eq!(codes(&mut carrier, &timing, 50.0, 80), fresh, "{waveform:?}");
+    }
+}
+
 /// Every positive half wave is large and every negative one small, so that the integral drifts to its limit. There the
 /// half period ends early, which is counted, and a whole one begins.
 #[test]

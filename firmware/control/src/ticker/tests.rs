@@ -166,14 +166,22 @@ proptest! {
         voltage_max_v_rms in any_number(),
         host_timeout_ticks in prop_oneof![any::<u32>(), Just(u32::MAX), 0_u32..9_000],
         gain in any_number(),
+        is_empty in any::<bool>(),
+        is_unloaded in any::<bool>(),
         is_loaded in any::<bool>(),
         touches_for_ticks in 0_u32..9_000,
     ) {
         let carrier = CarrierTiming::new(waveform, half_period_ticks, codes_per_v_rms, DacCode::from_bits(code_max));
         let given = || active(carrier, slew_step_v, voltage_max_v_rms, host_timeout_ticks);
         let (pool, mut first, mut second) = (BitmapPool::new(), given(), given());
+        if is_empty {
+            first.table.clear();
+        }
         let mut rig = Rig::new(Ticker::new(&BOARD, &pool, &mut first));
         rig.play();
+        if is_unloaded {
+            rig.ticker.apply(Order::Unload);
+        }
         if is_loaded {
             rig.ticker.apply(Order::Load(&mut second));
         }

@@ -32,8 +32,8 @@ use upload::{Staging, Upload};
 /// CRC-32 names of bitmaps.
 type BitmapNames = Vec<u32, RECORDS_MAX>;
 
-/// Memory of the scene after the one that plays: its bytes while they are uploaded, and its coefficients. All bits are
-/// zero at first, so that a static of it takes no flash.
+/// Memory for the next scene: its bytes while they are uploaded, and its coefficients, which trade places with the
+/// ticker's at each load. All bits are zero at first, so that a static of it takes no flash.
 pub struct NextScene {
     staging: Staging,
     coefficients: Active,
@@ -76,6 +76,8 @@ struct Committed {
 
 impl<'a> Scenes<'a> {
     pub(crate) fn new(pool: &'a BitmapPool, NextScene { staging, coefficients }: &'a mut NextScene) -> Self {
+        // The session that had this memory before may have left a scene.
+        staging.begin();
         Self {
             pool,
             directory: Directory::default(),
