@@ -7,7 +7,7 @@ pub(crate) use frixel_lab::input::{Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TO
 
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
 pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;
-/// Longest line of a person on standard input, in bytes; what is beyond it is dropped.
+/// Longest line read from standard input, in bytes; the rest of a longer line is dropped.
 pub(crate) const LINE_MAX_BYTES: usize = 4096;
 
 /// Reads a regular file of at most `max_bytes` bytes of UTF-8 text.
@@ -24,11 +24,11 @@ pub(crate) fn read_head(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     Ok(head)
 }
 
-/// The next line, without its end; `None` at the end of the input or when it breaks. Bytes beyond [`LINE_MAX_BYTES`]
-/// are dropped, and bytes that are not UTF-8 replaced.
+/// Reads the next line, without its line ending; `None` at the end of the input or on a read error. Drops bytes beyond
+/// [`LINE_MAX_BYTES`], and replaces bytes that are not UTF-8.
 pub(crate) fn next_line(input: &mut impl BufRead) -> Option<String> {
     let mut line = Vec::new();
-    let mut is_any = false;
+    let mut has_read = false;
     loop {
         let bytes = match input.fill_buf() {
             Ok(bytes) => bytes,
@@ -36,9 +36,9 @@ pub(crate) fn next_line(input: &mut impl BufRead) -> Option<String> {
             Err(_) => return None,
         };
         if bytes.is_empty() {
-            return is_any.then(|| text(&line));
+            return has_read.then(|| text(&line));
         }
-        is_any = true;
+        has_read = true;
         let end = bytes.iter().position(|byte| *byte == b'\n');
         let part = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or_default();
         let room = LINE_MAX_BYTES - line.len();
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_without_end_is_not_kept() {
+    fn an_endless_line_is_cut_at_the_limit() {
         let mut input = BufReader::new(repeat(b'x').take(50_000_000).chain(&b"\r\nnext\nlast"[..]));
         assert_eq!(next_line(&mut input).unwrap().len(), LINE_MAX_BYTES);
         assert_eq!(next_line(&mut input).as_deref(), Some("next"));

@@ -96,12 +96,12 @@ fn what_is_there_is_not_played_again() {
     let error = folder.run("sweep merge out").unwrap_err();
     assert!(error.contains("out: 5 of 6 cells are there: play the others with `frixel sweep"), "{error}");
     let said = folder.run("sweep plan.toml -o out").unwrap();
-    assert!(said.contains("1 played, 5 were there, of 6"), "{said}");
+    assert!(said.contains("1 played, 5 already there, of 6"), "{said}");
     assert!(folder.results("out") == results && folder.cells("out") == cells);
     // Another value plays its own cells only.
     fs::write(folder.path("plan.toml"), PLAN.replace("[0.02, 0.9]", "[0.02, 0.5, 0.9]")).unwrap();
     let said = folder.run("sweep plan.toml -o out").unwrap();
-    assert!(said.contains("3 played, 6 were there, of 9"), "{said}");
+    assert!(said.contains("3 played, 6 already there, of 9"), "{said}");
 }
 
 /// A file that was copied over another one, or changed, is not a result.

@@ -7,12 +7,12 @@ use std::str::FromStr;
 use frixel_lab::simulate::STROKE_MAX_S;
 use frixel_scene::has_unit;
 
-/// Heading of the options that few people need, in the help of a command.
+/// Help heading of rarely needed options.
 pub(super) const RARE: &str = "Rare options";
 /// Longest code of a participant, in characters.
 const PARTICIPANT_MAX: usize = 32;
 
-/// Parses a number in a range; otherwise says what was expected.
+/// Parses a number in a range; the error states `expected`.
 pub(super) fn number(text: &str, range: impl RangeBounds<f64>, expected: &str) -> Result<f64, String> {
     let without_unit = || if has_unit(text) { ", without a unit" } else { "" };
     let number = text.parse().ok().filter(|number| range.contains(number));
@@ -34,7 +34,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     whole(0..=u64::MAX)(text)
 }
 
-/// A parser of a whole number in a range.
+/// Returns a parser of whole numbers in a range.
 pub(super) fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
 where
     N: FromStr + PartialOrd + Display + Clone,
@@ -50,10 +50,10 @@ pub(super) fn shard(text: &str) -> Result<(usize, usize), String> {
     let numbers = text.split_once('/').and_then(|(part, parts)| part.parse().ok().zip(parts.parse().ok()));
     numbers
         .filter(|(part, parts): &(usize, usize)| (1..=*parts).contains(part))
-        .ok_or_else(|| "expected the number of a part and how many there are, for example 2/8".to_owned())
+        .ok_or_else(|| "expected a part and the number of parts, for example 2/8".to_owned())
 }
 
-/// The numbers above zero up to `max`.
+/// The numbers above zero, up to and including `max`.
 pub(super) fn above_zero_to(max: f64) -> impl RangeBounds<f64> {
     (Bound::Excluded(0.0), Bound::Included(max))
 }

@@ -1,4 +1,4 @@
-//! `frixel check`: prints what can be felt of a scene, and what it costs.
+//! `frixel check`: prints what is felt of a scene, and what it costs.
 
 use std::path::PathBuf;
 
@@ -26,20 +26,20 @@ pub(super) struct CheckArgs {
     profiles: ProfileArgs,
     #[command(flatten)]
     touch: TouchArgs,
-    /// Check for a real board: what it cannot take, and what is felt within its limits. Without it, the simulated board
-    /// counts, which nobody touches.
+    /// Check for a real board: what it refuses, and what is felt within its limits. Default: the simulated board, which
+    /// has no touch bound.
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: Option<String>,
-    /// Another series resistance of that board, kOhm; voltages up to its touch bound (`frixel board safety`).
+    /// Series resistance in place of that board's, kOhm; voltages go up to its touch bound (`frixel board safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// Also print the bytes and cycles behind *fits*.
     #[arg(long)]
     cost: bool,
-    /// Also report the smallest firmware build that plays it.
+    /// Also report the smallest firmware build that plays the scene.
     #[arg(long)]
     image: bool,
-    /// Print one JSON object in place of the summary; of a scene with mistakes, all of them.
+    /// Print one JSON object in place of the summary; for a scene with mistakes, it lists them.
     #[arg(long)]
     json: bool,
 }
@@ -53,8 +53,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     let compiled = scene.and_then(|scene| {
         compile(&scene, &rig.board.limits, rig.board.tick_hz).map_err(|error| {
             if board.is_some() && !args.json {
-                // Said beside the refusal, and nothing where there is no draft.
-                let _ = say_draft(&scene, &rig, &world);
+                // Printed in addition to the refusal, if a draft compiles.
+                let _ = print_draft(&scene, &rig, &world);
             }
             error.into()
         })
@@ -84,7 +84,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     print(check.summary(args.cost))
 }
 
-/// The board behind another resistance, if there is one.
+/// The board, behind another series resistance if one is given.
 fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
     let Some(series_kohm) = series_kohm else { return Ok(board) };
     let board = board.behind(1e3 * series_kohm as f32);
@@ -93,7 +93,7 @@ fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
     Ok(board)
 }
 
-/// What the board does with a program that fits it.
+/// The board's answer to a program within its limits.
 fn verdict(board: &Board, program: &Program) -> &'static str {
     let allowed_v_peak = board.never_measured_v_peak().unwrap_or(f32::INFINITY);
     if program.header.voltage_max_v_peak > allowed_v_peak {
@@ -103,21 +103,21 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
     }
 }
 
-/// Prints what a board gives of a scene that it refuses: everything clamped to what it can do.
-fn say_draft(scene: &Scene, rig: &RigConfig, world: &WorldOptions) -> Result<()> {
+/// Prints what is felt of a scene that a board refuses, clamped to the board's limits.
+fn print_draft(scene: &Scene, rig: &RigConfig, world: &WorldOptions) -> Result<()> {
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
     let judgement = judge(&draft, rig, world, Advice::Omitted, TO_THE_END);
     let felt = feel::text(&feel::lines(&judgement.map_err(of_simulation)?));
     print(board_line(&rig.board, &draft, "refuses it; what follows is clamped to what it can give") + &felt)
 }
 
-/// The board, the voltage that it gives at the scene's carrier, and the friction of the scene's finger there.
+/// The board, its voltage at the scene's carrier, and the friction of the scene's finger at that voltage.
 fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
     let until_measured = board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
         format!(
-            "                   the verdicts are for that; nothing stores limits on this board yet: it allows {v_peak} \
-             V peak (docs/board/pico.md)\n"
+            "                   verdicts are for that voltage; limits cannot be stored on this board yet, so it allows \
+             {v_peak} V peak (docs/board/pico.md)\n"
         )
     });
     format!(

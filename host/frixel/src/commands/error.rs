@@ -12,7 +12,7 @@ use frixel_lab::input::check_path;
 use frixel_model::ParameterError;
 use frixel_play::{PlayError, SimulationError};
 
-/// Puts what an error is about in front of it, for use in `map_err`.
+/// Prefixes an error with its subject, for use in `map_err`.
 pub(crate) fn at<E: Display>(subject: impl Display) -> impl FnOnce(E) -> anyhow::Error {
     move |error| anyhow!("{subject}: {error}")
 }
@@ -22,7 +22,7 @@ pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
     move |error| anyhow!("{} cannot be read ({error}): {}", path.display(), check_path(path, "check the path"))
 }
 
-/// Why a play on the board named by `--port` ended early.
+/// Converts the error that ended a play on the board named by `--port`.
 pub(crate) fn of_play(port: &str, error: PlayError) -> anyhow::Error {
     match error {
         PlayError::Stopped(reason) => anyhow!("{port} {reason}"),
@@ -30,7 +30,7 @@ pub(crate) fn of_play(port: &str, error: PlayError) -> anyhow::Error {
     }
 }
 
-/// Why a play on the simulator in this process ended early.
+/// Converts the error that ended a play on the simulator in this process.
 pub(crate) fn of_simulation(error: SimulationError) -> anyhow::Error {
     match error {
         SimulationError::Play(error) => of_play("sim", error),
@@ -38,17 +38,18 @@ pub(crate) fn of_simulation(error: SimulationError) -> anyhow::Error {
     }
 }
 
-/// The contact model has no answer for a finger.
+/// Converts the error of a finger that the contact model rejects.
 pub(crate) fn of_finger(error: ParameterError) -> anyhow::Error {
     at("the contact model rejects the scene's finger")(error)
 }
 
-/// No stroke fits the screen.
+/// Converts the error of a screen on which no stroke can be generated.
 pub(crate) fn of_generated_stroke(error: StrokeError) -> anyhow::Error {
     at("no stroke can be generated for this scene's screen")(error)
 }
 
-/// Adds to an error that ended a recording where its rows are, if it has any, with advice on how to keep them.
+/// Extends an error that ended a recording: names the file of the rows recorded so far, if any, and adds `advice` on
+/// how to keep them.
 pub(crate) fn cut_off(recording: &OutputFile, advice: &str, error: anyhow::Error) -> anyhow::Error {
     if recording.is_cut_off() {
         return anyhow!("{error}; what was recorded until then is in {}: {advice}", recording.partial().display());
@@ -56,7 +57,7 @@ pub(crate) fn cut_off(recording: &OutputFile, advice: &str, error: anyhow::Error
     error
 }
 
-/// This operating system lacks what `what` needs.
+/// The error of `what` on an operating system without pseudo-terminals.
 #[cfg(not(unix))]
 pub(crate) fn no_pseudo_terminal(what: &str) -> anyhow::Error {
     anyhow!(

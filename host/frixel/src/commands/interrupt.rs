@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use frixel_play::break_if;
 
-/// Exit code of a process that a second signal has ended: what shells report of one that Ctrl-C ended.
+/// Exit code after a second signal: 128 + SIGINT, as shells report a process that Ctrl-C ended.
 const EXIT_CODE: i32 = 130;
 
 /// Becomes true when Ctrl-C or a signal requests the command to end.
@@ -30,7 +30,8 @@ impl Interrupt {
         Ok(Self(requested))
     }
 
-    /// Like [`Self::is_requested`], for use after a failure that the same Ctrl-C may have caused a moment ago.
+    /// Like [`Self::is_requested`], for use after a failure: waits 50 ms for the signal, since a Ctrl-C may have caused
+    /// the failure by ending a child process first.
     pub(super) fn was_requested(&self) -> bool {
         std::thread::sleep(std::time::Duration::from_millis(50));
         self.is_requested()

@@ -1,4 +1,4 @@
-//! `--jobs`: how many plays a command simulates side by side.
+//! `--jobs`: the number of plays that a command simulates in parallel.
 
 use std::num::NonZero;
 
@@ -11,14 +11,13 @@ use super::argument::whole;
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct JobsArgs {
-    /// Simulate so many plays side by side. Without it, as many as this machine has processors. Results are the same
-    /// for any number.
+    /// Number of plays to simulate in parallel; results do not depend on it. Default: one per processor.
     #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     jobs: Option<u64>,
 }
 
 impl JobsArgs {
-    /// Does work that simulates on the threads of its rayon pool.
+    /// Runs `work` in a rayon pool of this many threads.
     pub(super) fn run<R: Send>(self, work: impl FnOnce() -> R + Send) -> Result<R> {
         let jobs = self.jobs.map(|jobs| jobs as usize);
         let threads = jobs.or_else(|| std::thread::available_parallelism().ok().map(NonZero::get)).unwrap_or(1);

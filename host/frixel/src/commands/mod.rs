@@ -58,13 +58,13 @@ enum Command {
     New(new::NewArgs),
     /// Play a scene on a board or on the simulator.
     Play(play::PlayArgs),
-    /// Report every mistake of a scene, or what is felt of it, what can be reached, and whether it fits a board.
+    /// Report every mistake in a scene, or else what is felt, which friction it reaches, and whether it fits a board.
     Check(check::CheckArgs),
     /// Draw the friction map of a scene: a PNG with rulers, and a colour scale in millinewtons.
     Preview(preview::PreviewArgs),
     /// Print the JSON schema of the scene file, for editors.
     Schema,
-    /// Say which layers simulated fingers notice.
+    /// Report which layers simulated fingers notice.
     Score(score::ScoreArgs),
     /// Play every combination of scenes, people, screens and values, and draw which simulated fingers feel what.
     Sweep(sweep::SweepArgs),
@@ -72,7 +72,7 @@ enum Command {
     Sim(SimArgs),
     /// Open the studio, a page in which scenes are made, seen and heard.
     Studio(studio::StudioArgs),
-    /// Play a simulated recording again, and say whether the bits are the same.
+    /// Play a simulated recording again, and check that the result is the same to the bit.
     Replay(play::replay::ReplayArgs),
     /// Find, check and record from a board at a serial port.
     #[command(subcommand)]
@@ -89,16 +89,16 @@ enum Command {
     Report(report::ReportArgs),
 }
 
-/// Of every system, so that one without pseudo-terminals says what it lacks.
+/// Parsed on every operating system: without pseudo-terminals, the command fails with a sentence.
 #[derive(Debug, Args)]
 struct SimArgs {
     #[command(flatten)]
     stroke: StrokeArgs,
-    /// The finger on this board, which its scenes do not change: a profile's file, or `example`, `dry`, `moist` or
-    /// `light`. Without it, the finger is that of the scene that plays.
+    /// The finger on this board, whatever scene plays: a profile's file, or `example`, `dry`, `moist` or `light`.
+    /// Default: the finger of the scene that plays.
     #[arg(long, value_name = "NAME|FILE", group = "own_finger")]
     finger: Option<String>,
-    /// A simulated person in place of --finger: another one for each seed.
+    /// Seed of a simulated person, in place of --finger.
     #[arg(long, value_name = "N", group = "own_finger")]
     finger_seed: Option<u64>,
     /// The screen under the finger of --finger or --finger-seed: a screen's file or `example`. Default: `example`.
@@ -115,15 +115,15 @@ struct SimArgs {
     /// Seed of the simulator's random numbers.
     #[arg(long, default_value_t = 1, value_parser = argument::seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Run a scenario in place of serving a board, as fast as it goes: what a host does, what goes wrong, and what has
-    /// to be seen (docs/inside/scenarios.md). Prints what happened.
+    /// Run a scenario in place of serving a board, as fast as possible: a host's actions, faults, and expectations
+    /// (docs/inside/scenarios.md). Prints what happened.
     #[arg(
         long,
         value_name = "FILE.toml",
         conflicts_with_all = ["finger", "finger_seed", "screen", "ideal", "seed", "out", "stroke", "from", "touch"]
     )]
     scenario: Option<PathBuf>,
-    /// Fail, with exit code 1, unless all is seen that the scenario expects.
+    /// Fail, with exit code 1, unless every expectation of the scenario is met.
     #[arg(long, requires = "scenario")]
     expect: bool,
     /// Rig of the scenario: `sim` in this process, or an emulated `qemu` or `pico`.
@@ -159,19 +159,18 @@ impl Cli {
     }
 }
 
-/// Tips for words that are no command and in no group of commands.
+/// Tips for likely words that are not commands, not even in a group.
 const TIPS: [(&str, &str); 2] = [
     ("scene", "write `frixel check`, `frixel preview` or `frixel schema`"),
     ("threshold", "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python"),
 ];
 
-/// The error of an invalid command line. A command without its group is answered by its whole name, `frixel board info`
-/// for `frixel info`.
+/// Adds a tip to the error of an unknown command: for `frixel info`, which lacks its group, `frixel board info`.
 pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
     let cli = Cli::command();
-    let has_it = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
-    let group = cli.get_subcommands().find(has_it);
+    let has_command = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
+    let group = cli.get_subcommands().find(has_command);
     let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name())).or_else(|| {
         let tip = TIPS.into_iter().find(|(word, _)| word == found);
         tip.map(|(_, tip)| tip.to_owned())
@@ -189,7 +188,7 @@ pub(crate) fn report_error(error: &anyhow::Error) {
 }
 
 #[cfg(test)]
-#[allow(dead_code, reason = "the tests of the files that are written read the rest")]
+#[allow(dead_code, reason = "`tests/outputs` reads the rest")]
 #[path = "../../tests/outputs/table.rs"]
 mod table;
 
@@ -201,7 +200,7 @@ mod tests {
 
     use super::*;
 
-    /// Every argument that is a path, with its command.
+    /// Collects every argument that is a path, with its command.
     fn paths(command: &clap::Command, of: &str, found: &mut BTreeSet<String>) {
         let is_path =
             |argument: &&clap::Arg| argument.get_value_parser().type_id() == ValueParser::path_buf().type_id();
@@ -236,7 +235,7 @@ mod tests {
         }
     }
 
-    /// No document has the columns and the statuses of the model's rows.
+    /// The help is the only description of the model's columns and statuses.
     #[test]
     fn the_help_of_the_model_names_every_column_and_status() {
         let help = |name| {
@@ -255,7 +254,7 @@ mod tests {
         }
     }
 
-    /// A command with a new output stands in the table that the tests of `tests/outputs` go through.
+    /// A new output has to be added to the table that `tests/outputs` goes through.
     #[test]
     fn every_path_on_the_command_line_is_a_known_input_or_a_tested_output() {
         let mut found = BTreeSet::new();

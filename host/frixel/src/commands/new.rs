@@ -14,7 +14,7 @@ use frixel_scene::{Screen, check_picture, layer_kinds};
 
 use super::terminal::print_line;
 
-/// How the names of pictures end.
+/// File extensions of pictures.
 const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
 #[derive(Debug, Args)]
@@ -54,7 +54,7 @@ pub(super) fn run(args: &NewArgs) -> Result<()> {
     ))
 }
 
-/// The path of the scene of a name. A dot in the name does not begin an extension: `wood-0.5mm` is a name.
+/// The path of the scene file with a name. A dot in the name does not begin an extension: `wood-0.5mm` is a name.
 fn scene_path(name: &Path) -> PathBuf {
     if name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         return name.to_owned();
@@ -67,36 +67,36 @@ fn scene_path(name: &Path) -> PathBuf {
 /// Width and height of a picture that can be played.
 fn pixels(picture: &Path) -> Result<(usize, usize)> {
     let bytes = input::read(picture, input::PICTURE_MAX_BYTES).map_err(reading(picture))?;
-    check_picture(&bytes).map_err(at(format!("{} is no picture that can be played", picture.display())))
+    check_picture(&bytes).map_err(at(format!("{} cannot be played as a picture", picture.display())))
 }
 
 fn is_of_picture(extension: &OsStr) -> bool {
     PICTURE_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
-/// A path as one word of a command that a person may copy: in single quotes, unless it is a word without them.
+/// A path as one word of a shell command: in single quotes where it needs them.
 fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
     let is_plain = |letter: char| letter.is_alphanumeric() || letter == MAIN_SEPARATOR || "/:._-+,@".contains(letter);
     if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
-/// The path of a picture from the folder of the scene.
+/// The path of a picture relative to the scene's folder.
 fn name_from(scene: &Path, picture: &Path) -> Result<String> {
     let from = real_folder(scene).map_err(writing(scene))?;
     let to = real_folder(picture).map_err(reading(picture))?;
     let name = relative(&from, &to).join(picture.file_name().unwrap_or_default());
-    // Scenes have slashes on every operating system.
+    // Scene files use slashes on every operating system.
     Ok(name.display().to_string().replace(MAIN_SEPARATOR, "/"))
 }
 
-/// The folder of a file, without links and dots.
+/// The canonical path of a file's folder.
 fn real_folder(file: &Path) -> io::Result<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::canonicalize(folder)
 }
 
-/// The way from a folder to another, both without links and dots; the whole path if they are on different drives.
+/// The relative path between two canonical folders; the whole path if they are on different drives.
 fn relative(from: &Path, to: &Path) -> PathBuf {
     let common = from.components().zip(to.components()).take_while(|(one, other)| one == other).count();
     if common == 0 {
@@ -112,7 +112,7 @@ fn head() -> String {
     format!(
         "# docs/design/scene-reference.md has every key. Lengths are in mm from the top left corner of the screen.\n\
          # Without [screen] and [finger] the scene is meant for the example screen, {width_mm} by {height_mm} mm, and the\n\
-         # example finger. Fractions are parts of what that finger can be given above its natural friction.\n\
+         # example finger. Fractions: 0 is that finger's natural friction, 1 the highest that can be reached.\n\
          version = 1\n"
     )
 }
@@ -142,8 +142,7 @@ fn with_stripes() -> String {
     )
 }
 
-/// The largest rectangle with the ratio of a picture's sides in the middle of the example screen: left, top, width,
-/// height.
+/// The largest rectangle with a picture's aspect ratio in the middle of the example screen: left, top, width, height.
 fn fitted_mm((width, height): (usize, usize)) -> [f64; 4] {
     let [x_mm, y_mm, width_mm, height_mm] = middle_mm();
     let (width, height) = (width.max(1) as f64, height.max(1) as f64);
@@ -156,11 +155,11 @@ fn fitted_mm((width, height): (usize, usize)) -> [f64; 4] {
 
 fn with_picture(picture: &str, pixels: (usize, usize)) -> String {
     let [x_mm, y_mm, width_mm, height_mm] = fitted_mm(pixels);
-    // With the quotation marks, and what else the name needs to be one.
+    // Quoted and escaped.
     let picture = toml_edit::Value::from(picture);
     format!(
         "{}\n\
-         # The picture, as friction: it fills the region, whose sides have the ratio of its own.\n\
+         # The picture, as friction. The region has the picture's aspect ratio.\n\
          [[layer]]\n\
          name = \"picture\"\n\
          kind = \"bitmap\"\n\

@@ -1,4 +1,4 @@
-//! What all commands that write a Parquet recording have in common.
+//! Shared by all commands that write a Parquet recording.
 
 use std::path::Path;
 
@@ -8,21 +8,21 @@ use frixel_lab::recording::{Field, Metadata, Recording};
 use super::error::at;
 use frixel_files::OutputFile;
 
-/// Whether a file is to be Parquet, by its name.
-pub(super) fn is_named_so(path: &Path) -> bool {
+/// Whether a file's name ends in `.parquet`.
+pub(super) fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
-/// Rejects a recording whose name ends as another kind of file does, and the code of a participant for one in CSV,
-/// which has no place for it.
+/// Rejects a recording whose name is neither of a CSV nor of a Parquet file, and a participant's code for CSV, which
+/// has no place for it.
 pub(super) fn check_output(output: &Path, participant: Option<&str>) -> Result<()> {
     let is_another = output.extension().is_some_and(|extension| !extension.eq_ignore_ascii_case("csv"));
-    if is_another && !is_named_so(output) {
-        bail!("{} is no CSV or Parquet file by its name: end it in .csv or .parquet", output.display());
+    if is_another && !is_parquet(output) {
+        bail!("{} is not the name of a CSV or Parquet file: end it in .csv or .parquet", output.display());
     }
-    if participant.is_some() && !is_named_so(output) {
+    if participant.is_some() && !is_parquet(output) {
         bail!(
-            "--participant goes into a Parquet file, and {} is none by its name: give one that ends in .parquet",
+            "--participant goes into a Parquet file, and {} is not the name of one: give one that ends in .parquet",
             output.display()
         );
     }

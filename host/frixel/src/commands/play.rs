@@ -1,4 +1,4 @@
-//! `frixel play`: a scene on a board, real or not.
+//! `frixel play`: plays a scene on a board, real or simulated.
 //!
 //! `Plan` is the checked input of a play, `rigs` opens the board that `--port` names, `follow` plays and records,
 //! and `Outputs` writes the files. This module prints the results.
@@ -59,7 +59,7 @@ pub(super) struct PlayArgs {
     /// Output folder. Replaces an earlier play there.
     #[arg(long, default_value = "frixel-out")]
     out: PathBuf,
-    /// Also replace what a finger did on a real board.
+    /// Also replace a play on a real board.
     #[arg(long)]
     overwrite: bool,
     /// Also print the world, every error, and the ticks and bytes.
@@ -79,13 +79,13 @@ pub(super) struct PlayArgs {
     /// Simulate skin through which no charge leaks. By default it leaks below 250 Hz.
     #[arg(long, conflicts_with = "ideal", help_heading = RARE)]
     no_leakage: bool,
-    /// Simulated person, another for each seed, for whom the scene is not made.
+    /// Seed of a simulated person, for whom the scene was not made.
     #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true, help_heading = RARE)]
     finger_seed: Option<u64>,
-    /// Also record the play, and all that made it, for `frixel replay` (docs/design/outputs.md).
+    /// Also record the play and its inputs, for `frixel replay` (docs/design/outputs.md).
     #[arg(long, value_name = "FILE.parquet")]
     record: Option<PathBuf>,
-    /// Participant's code in the file of --record, no name: letters, digits, `-_.`.
+    /// Participant's code in the file of --record, not a name: letters, digits, `-_.`.
     #[arg(long, value_name = "CODE", value_parser = argument::participant, requires = "record", help_heading = RARE)]
     participant: Option<String>,
     /// Rows a second of felt.csv and --record; at most 1000 on a board.
@@ -106,7 +106,7 @@ pub(super) struct PlayArgs {
     /// Change the scene by lines on standard input, such as `layer 3 off` (docs/design/scenes.md).
     #[arg(long)]
     control: bool,
-    /// Join the felt.csv that the `frixel sim` at --port writes: what its finger felt.
+    /// Add what the finger felt, from the felt.csv that the `frixel sim` at --port writes.
     #[arg(long, value_name = "FILE.csv", help_heading = RARE)]
     with_log: Option<PathBuf>,
     #[command(flatten)]
@@ -123,7 +123,7 @@ impl PlayArgs {
         Ok(Self::from_arg_matches(&command.try_get_matches_from(typed)?)?)
     }
 
-    /// The options as a recording has them, but for the names of finger and screen.
+    /// The options as a recording stores them, without the names of finger and screen.
     fn options(&self, stream_s: Option<f64>) -> PlayOptions {
         let touch = self.touch.bundled_name().or(self.touch.file().map(|_| PlayOptions::FILE));
         PlayOptions {
@@ -145,7 +145,7 @@ impl PlayArgs {
         }
     }
 
-    /// An error of the options in the words of the command.
+    /// Converts an error of the options into a sentence that names the command's arguments.
     fn error(&self, error: PlayOptionsError) -> anyhow::Error {
         match error {
             PlayOptionsError::Stroke(error) => of_stroke_options(error),
@@ -158,7 +158,7 @@ impl PlayArgs {
         }
     }
 
-    /// The effects that the simulated world has beside the contact model.
+    /// Effects of the simulated world beyond the contact model.
     fn effects(&self) -> Effects {
         match (self.ideal, self.no_leakage) {
             (true, _) => Effects::None,

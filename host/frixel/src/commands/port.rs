@@ -1,4 +1,4 @@
-//! How every command opens the serial port that its `--port` names.
+//! The serial port that `--port` names, as every command opens it.
 
 use anyhow::{Result, anyhow, bail};
 use frixel_driver::{DEFAULT_BAUD, Device, PortError, SerialLink};
@@ -10,7 +10,7 @@ use crate::rigs::PortLink;
 /// The boards that `--port` of `frixel play` names in place of a path.
 pub(super) const BOARDS: [&str; 3] = ["sim", "qemu", "pico"];
 
-/// Opens the serial port that `--port` of a command names, where the command takes these boards in place of a path.
+/// Opens the serial port that `--port` names. `boards` are the names that the command also accepts.
 pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
     SerialLink::open(port, DEFAULT_BAUD).map_err(|source| match source {
         PortError::NotThere { .. } if !port.contains(['/', '\\']) => {
@@ -20,8 +20,8 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
     })
 }
 
-/// Connects to the board at a serial port, to play on it: says what a person should know of it, and rejects one whose
-/// electrode may not be driven. The command takes these boards in place of a port.
+/// Connects to the board at a serial port, to play on it. Prints the board's notices, and rejects a board with an
+/// electrode unless `arm` is set. `boards` are the names that the command also accepts.
 pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
     let device = Device::connect(PortLink::new(open(port, boards)?))?;
     for sentence in device.hello().notice_sentences() {
@@ -36,7 +36,7 @@ pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<
     )
 }
 
-/// Names what `--port` of a command takes, and guesses which of it was meant.
+/// Lists what `--port` accepts, and suggests the closest name.
 fn advice(port: &str, boards: &[&str]) -> String {
     let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
     let takes = format!("--port takes {words}the path of a board's serial port");

@@ -1,4 +1,4 @@
-//! `frixel preview`: draws the friction map of a scene, and says what a person will feel.
+//! `frixel preview`: draws the friction map of a scene, and prints what a person will feel.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub(super) struct PreviewArgs {
 pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     if !args.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         let path = args.output.display();
-        bail!("{path} is no PNG file by its name: give the picture a name that ends in .png");
+        bail!("{path} is not the name of a PNG file: give the picture a name that ends in .png");
     }
     let rig = RigConfig::default();
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);

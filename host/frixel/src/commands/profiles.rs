@@ -32,7 +32,7 @@ pub(super) struct TouchArgs {
 }
 
 impl TouchArgs {
-    /// The name of the source, if it is a bundled one.
+    /// The name of the source, if it is bundled.
     pub(super) fn bundled_name(&self) -> Option<&str> {
         self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_some())
     }
@@ -41,7 +41,7 @@ impl TouchArgs {
         self.touch.is_some()
     }
 
-    /// The file of the source, if it is in one.
+    /// The file of the source, if it is read from one.
     pub(super) fn file(&self) -> Option<&Path> {
         file_of::<TouchConfig>(self.touch.as_ref())
     }
@@ -51,7 +51,7 @@ impl TouchArgs {
         self.touch.as_deref().map(profile).transpose()
     }
 
-    /// A world with this source.
+    /// Options of a world with this source.
     pub(super) fn world(&self, ideal: bool) -> Result<WorldOptions, SceneFileError> {
         Ok(WorldOptions { ideal, touch: self.source()?, ..WorldOptions::default() })
     }

@@ -1,4 +1,4 @@
-//! `frixel sim --scenario`: runs a scenario on a rig, and says what was not as expected.
+//! `frixel sim --scenario`: runs a scenario on a rig, and prints the expectations that were not met.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -41,7 +41,7 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
     let scenario = read(file)?;
     if expect && scenario.expectations.is_empty() {
         bail!(
-            "{}: --expect compares with what this scenario expects, and it expects nothing: add an [[expect]] \
+            "{}: --expect checks a scenario's expectations, and this one has none: add an [[expect]] \
              (docs/inside/scenarios.md)",
             file.display()
         );
@@ -68,7 +68,7 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
         bail!("{}: {unmet} {were} not as expected: see above", file.display());
     }
     if unmet == 0 && expectations > 0 {
-        print_line(format_args!("all of {expectations} expectations were met"))?;
+        print_line(format_args!("all {expectations} expectations were met"))?;
     }
     Ok(())
 }
@@ -91,7 +91,7 @@ fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<
     Ok(scenario::run(scenario, &programs, &mut rig)?)
 }
 
-/// The programs of a scenario for a board. Says where its stroke is off their screen.
+/// The programs of a scenario for a board. Prints a note if the stroke leaves the screen.
 fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs> {
     let programs = scenario::programs(scenario, scenes, board)?;
     if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {

@@ -19,7 +19,7 @@ use frixel_scene::Nearest;
 use super::argument::{RARE, above_zero_to, number, whole};
 use super::terminal::{note, note_interrupted, note_understood};
 
-/// Options that say where the simulated finger goes.
+/// Options of the simulated finger's path.
 #[derive(Clone, Debug, Args)]
 pub(super) struct StrokeArgs {
     /// Finger's path: `human`, `human-rough`, `sweep` or a CSV file. Default: over every layer.
@@ -65,7 +65,7 @@ pub(super) struct StrokeArgs {
 }
 
 impl StrokeArgs {
-    /// The options as a recording has them, without the path of a file.
+    /// The options as a recording stores them, without the path of a file.
     pub(super) fn options(&self) -> StrokeOptions {
         let place = |point: Point| [point.x_m, point.y_m];
         let name = |path: &PathBuf| generated(path).map_or(PlayOptions::FILE, GeneratedStroke::name).to_owned();
@@ -99,18 +99,18 @@ impl StrokeArgs {
         self.options().generated(screen_m, seconds, seed).map_err(of_stroke_options)
     }
 
-    /// What the stroke is called in messages.
+    /// Name of the stroke in messages.
     pub(super) fn name(&self) -> String {
         self.stroke.as_ref().map_or_else(|| "the stroke".to_owned(), |path| path.display().to_string())
     }
 }
 
-/// The stroke that the text of an option names, if it is not a file.
+/// The generated stroke that an option names; `None` for a file.
 fn generated(option: &Path) -> Option<GeneratedStroke> {
     option.to_str().and_then(GeneratedStroke::named)
 }
 
-/// The error in the words of the options.
+/// Converts an error of the options into a sentence that names them.
 pub(super) fn of_stroke_options(error: StrokeOptionsError) -> anyhow::Error {
     match error {
         StrokeOptionsError::InPlace => anyhow!("--from and --to are the same place: give two places that differ"),
@@ -122,7 +122,7 @@ pub(super) fn of_stroke_options(error: StrokeOptionsError) -> anyhow::Error {
     }
 }
 
-/// Why a stroke cannot be read. One without the ending of a file may be a name with a typing mistake.
+/// The error of a stroke that cannot be read. Without a file extension, it may be a mistyped name.
 fn unreadable(path: &Path, error: io::Error) -> anyhow::Error {
     let name = path.to_str().filter(|_| path.extension().is_none() && error.kind() == io::ErrorKind::NotFound);
     match name.and_then(|name| Nearest::new(name, GeneratedStroke::names()).suggestion) {
@@ -163,8 +163,8 @@ fn speed_m_per_s(text: &str) -> Result<f64, String> {
     Ok(1e-3 * speed_mm_per_s)
 }
 
-/// Prints a note if a stroke is partly off a screen of this width and height, in m, in its first `seconds`. Fails if it
-/// is never on it.
+/// Prints a note if a stroke is partly off a screen of this width and height, in m, in its first `seconds`. Fails if
+/// the stroke is never on the screen.
 pub(super) fn note_off_screen(
     name: &str,
     stroke: &Stroke,

@@ -19,11 +19,11 @@ use super::terminal::{note, print_line};
 const PAGE_BESIDE: &str = "frixel-studio.html";
 /// The page in the folder of build artefacts.
 const BUILT_PAGE: &str = "studio/frixel-studio.html";
-/// That folder in a checkout, unless `CARGO_TARGET_DIR` names another.
+/// The folder of build artefacts in a checkout, unless `CARGO_TARGET_DIR` names another.
 const TARGET: &str = "target";
 /// A file that only a checkout of frixel has.
 const SIGN_OF_A_CHECKOUT: &str = "host/studio/web/boot.js";
-/// There is no page, and no checkout that could have one.
+/// The error if there is neither a page nor a checkout that could build one.
 const NO_PAGE: &str = "no page found: run `cargo xtask studio` in a checkout of frixel (some minutes), or give --page \
                        FILE.html";
 /// Folders of a checkout that the page is made from.
@@ -40,15 +40,15 @@ const SOURCES: [&str; 11] = [
     "model",
     "scenes",
 ];
-/// Folders that builds write into, which are as new as the last build.
-const NO_SOURCES: [&str; 2] = ["target", "node_modules"];
+/// Folders that builds write into; a newer file there does not make the page outdated.
+const BUILD_FOLDERS: [&str; 2] = ["target", "node_modules"];
 
 #[derive(Debug, Args)]
 pub(super) struct StudioArgs {
-    /// The page that `cargo xtask studio` builds. Default: the one beside this command, or that of the checkout.
+    /// The page that `cargo xtask studio` builds. Default: the page beside this command, or the checkout's.
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
-    /// Print the page's path, and do not open the browser.
+    /// Print the page's path without opening a browser.
     #[arg(long)]
     no_browser: bool,
     /// Refused: the page asks for the port.
@@ -67,8 +67,8 @@ pub(super) fn run(args: &StudioArgs) -> Result<()> {
     Ok(())
 }
 
-/// The absolute path of the page that was given, that lies beside the command, or that the checkout around the current
-/// folder has built.
+/// The absolute path of the page: the given one, else the one beside the command, else the one built in the checkout
+/// around the current folder.
 fn page(args: &StudioArgs) -> Result<PathBuf> {
     if args.port.is_some() {
         bail!("choose the port in the page, in Chromium or Firefox: leave out --port");
@@ -94,7 +94,7 @@ fn page_beside(program: &Path) -> Option<PathBuf> {
     Some(program.with_file_name(PAGE_BESIDE)).filter(|page| page.is_file())
 }
 
-/// The page of the checkout around a folder, whose build artefacts are in `target`, if that is not the usual folder.
+/// The page of the checkout around `here`. Its build artefacts are in `target`, if given, in place of the usual folder.
 fn page_of_checkout(here: &Path, target: Option<OsString>) -> Result<PathBuf> {
     let mut folders = here.ancestors();
     let checkout = folders.find(|folder| folder.join(SIGN_OF_A_CHECKOUT).is_file()).context(NO_PAGE)?;
@@ -113,19 +113,19 @@ fn page_of_checkout(here: &Path, target: Option<OsString>) -> Result<PathBuf> {
     Ok(page)
 }
 
-/// Whether a folder has a file, in whatever folder below, that was changed after a time.
+/// Whether a file anywhere below a folder was changed after a time.
 fn has_newer(folder: &Path, time: SystemTime) -> bool {
     let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.any(|entry| match entry.metadata() {
         Ok(found) if found.is_dir() => {
-            !NO_SOURCES.iter().any(|name| entry.file_name() == *name) && has_newer(&entry.path(), time)
+            !BUILD_FOLDERS.iter().any(|name| entry.file_name() == *name) && has_newer(&entry.path(), time)
         }
         Ok(found) => found.modified().is_ok_and(|modified| modified > time),
         Err(_) => false,
     })
 }
 
-/// Opens a page in the first browser of `BROWSER` that starts, or else in that of the desktop.
+/// Opens a page in the first browser of `BROWSER` that starts, or else in the desktop's browser.
 fn open_browser(page: &str) -> io::Result<()> {
     let list = env::var_os("BROWSER").unwrap_or_default();
     if browsers(&list, page).iter().any(|words| start(words).is_ok()) {
@@ -149,7 +149,7 @@ fn browsers(list: &OsStr, page: &str) -> Vec<Vec<String>> {
     env::split_paths(list).filter(|entry| !entry.as_os_str().is_empty()).map(command).collect()
 }
 
-/// Starts a command that goes on without this one.
+/// Starts a command that outlives this one.
 fn start(words: &[String]) -> io::Result<()> {
     let (program, arguments) = words.split_first().ok_or(io::ErrorKind::NotFound)?;
     let mut command = Command::new(program);

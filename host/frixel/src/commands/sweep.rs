@@ -22,8 +22,9 @@ use crate::input;
 use crate::scene_file::gathered;
 use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all, create_folder};
 
-/// Time between two tries to write a file that another process writes, and the longest time for all of them.
+/// Time between tries to write a file that another process is writing.
 const WAIT: Duration = Duration::from_millis(10);
+/// Longest time for all tries.
 const WAIT_MAX: Duration = Duration::from_secs(10);
 
 #[derive(Debug, Args)]
@@ -102,7 +103,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
         bar.finish_and_clear();
     }
     let had = own.len() - left.len();
-    print_line(format_args!("  {:<30} {} played, {had} were there, of {}", "cells", left.len(), cells.len()))?;
+    print_line(format_args!("  {:<30} {} played, {had} already there, of {}", "cells", left.len(), cells.len()))?;
     if parts == 1 { merge(out, &inputs) } else { Ok(()) }
 }
 
@@ -120,7 +121,7 @@ fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
     }
 }
 
-/// The cells of a plan, whose files are named from its folder.
+/// The cells of a plan, whose files are named relative to its folder.
 fn cells(plan: &Plan, folder: &Path) -> Result<Vec<Cell>> {
     let text = |what, name: &str| {
         let path = folder.join(name);
@@ -172,7 +173,7 @@ fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>> {
 }
 
 fn no_sweep_file(path: &Path, what: &'static str, error: &dyn Display) -> anyhow::Error {
-    anyhow!("{} is no {what} ({error}): delete it, and play the sweep again", path.display())
+    anyhow!("{} is not a {what} ({error}): delete it, and play the sweep again", path.display())
 }
 
 fn unreadable(path: &Path, what: &str, error: &io::Error, advice: &str) -> anyhow::Error {

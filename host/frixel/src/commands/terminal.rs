@@ -1,6 +1,6 @@
 //! Text for people, on standard output and standard error. A reader that has closed its end is not an error.
 //!
-//! Everything that a command prints goes through this module, which escapes what would control the terminal.
+//! Everything that a command prints goes through this module, which escapes the terminal's control characters.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
@@ -23,7 +23,7 @@ pub(super) fn print_line(text: impl Display) -> Result<()> {
     print(format_args!("{text}\n"))
 }
 
-/// Writes a line for people: to standard error if `output` is standard output.
+/// Writes a line to standard output, or to standard error if `output` is standard output.
 pub(super) fn say(output: &OutputFile, text: impl Display) -> Result<()> {
     if output.is_standard_output() {
         note(text);
@@ -32,12 +32,12 @@ pub(super) fn say(output: &OutputFile, text: impl Display) -> Result<()> {
     print_line(text)
 }
 
-/// Writes a line to standard error. Nothing can be said about a failure to do so.
+/// Writes a line to standard error. Ignores a failure, which could not be reported.
 pub(super) fn note(text: impl Display) {
     let _ = writeln!(stderr().lock(), "{}", printable_lines(&text.to_string()));
 }
 
-/// Says on standard error how a table was understood, if that is worth a sentence.
+/// Prints on standard error how a table was interpreted, if that needs a note.
 pub(super) fn note_understood(table: &Path, understood: Option<&str>) {
     if let Some(understood) = understood {
         let name = if table == Path::new("-") { "standard input".into() } else { table.display().to_string() };
@@ -45,12 +45,12 @@ pub(super) fn note_understood(table: &Path, understood: Option<&str>) {
     }
 }
 
-/// Says on standard error that a file of a play is not the one that the play's summary was written with.
+/// Prints a note on standard error if a file of a play does not belong to the play's summary.
 pub(super) fn note_interrupted(file: &Path, bytes: &[u8]) {
     if is_of_interrupted_play(file, bytes) {
         let file = file.display();
         note(format_args!(
-            "{file}: of an interrupted play, or written since: it is not the file that summary.json was written with"
+            "{file}: from an interrupted play, or changed since: it does not belong to the summary.json beside it"
         ));
     }
 }

@@ -134,7 +134,7 @@ fn finish(
              record` runs"
         );
     }
-    if parquet::is_named_so(&args.output) {
+    if parquet::is_parquet(&args.output) {
         drop(writer);
         let (_rows, text) = recording.resume()?;
         let is_simulated = board.is_some_and(|hello| hello.board.is_simulated());

@@ -107,7 +107,7 @@ fn write(
     let rows = align(board, forces)?;
     let mut bytes = Vec::new();
     write_csv(&mut bytes, &rows)?;
-    if parquet::is_named_so(&args.output) {
+    if parquet::is_parquet(&args.output) {
         // What was cut off is of a board: a simulator needs no file until the end.
         let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
         let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };

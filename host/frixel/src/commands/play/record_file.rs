@@ -25,7 +25,7 @@ const PERSON_GROUP_S: u32 = 10;
 /// The file that `--record` names; none without that option.
 pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>> {
     let Some(path) = &args.record else { return Ok(None) };
-    if !parquet::is_named_so(path) && path != Path::new("-") && !path.starts_with("/dev") {
+    if !parquet::is_parquet(path) && path != Path::new("-") && !path.starts_with("/dev") {
         let path = path.display();
         bail!("{path} is no Parquet file by its name: give --record a name that ends in .parquet");
     }
