@@ -1,10 +1,11 @@
-//! Command lines with their answers: the pages in `corpus` have files, a command, and what is said to it. What is wrong
-//! is answered in one clear sentence with what was found and what to do. What the compiler says about scenes stands in
+//! Command lines with their output: the pages in `corpus` have files, a command, and what it prints. Each mistake gets
+//! one clear sentence with what was found and what to do. The compiler's sentences about scenes are in
 //! `host/scene/tests/corpus`.
 //!
-//! A block `sh command` has a command a line, which run one after the other. A block `text shows` has beginnings of
-//! lines that are printed, and a block `text shows:FILE` those of lines of a file; one that no line has is said at the
-//! end. JSON is shown as a line for each of its values, with the path to it. The bundled scenes are in the folder `scenes`.
+//! A block `sh command` has one command per line, run in order. A block `text shows` has beginnings of lines that are
+//! printed, and a block `text shows:FILE` beginnings of lines of a file; one that no line begins with is reported at
+//! the end. JSON is shown as a line for each of its values, with the path to it. The bundled scenes are in the folder
+//! `scenes`.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

@@ -167,7 +167,7 @@ fn what_changes_a_play_is_marked_and_changes_it_again() {
     let mut other = recording.clone();
     other.metadata.play["lines"][3] = "layer wall gain 0.6".into();
     write(folder.path(), "other.parquet", &other);
-    assert!(refused(folder.path(), "other.parquet").contains("other.parquet plays other bits: row 2"));
+    assert!(refused(folder.path(), "other.parquet").contains("other.parquet does not play the same bits: row 2"));
     let mut without = recording.clone();
     without.metadata.play.as_object_mut().unwrap().remove("lines");
     write(folder.path(), "without.parquet", &without);
@@ -230,7 +230,7 @@ fn what_is_streamed_is_in_the_recording_and_streamed_again() {
             bytes[100] ^= 0x80;
             other.metadata.files = SourceFile::all([("stream".to_owned(), bytes.as_slice())]);
             write(folder.path(), "other.parquet", &other);
-            assert!(refused(folder.path(), "other.parquet").contains("other.parquet plays other bits: row "));
+            assert!(refused(folder.path(), "other.parquet").contains("other.parquet does not play the same bits: row "));
             // Beyond 4 MiB.
             let hash = SourceFile::Hash { sha256: "00".to_owned(), bytes: 9_000_000 };
             other.metadata.files.insert("stream".to_owned(), hash);
@@ -277,7 +277,7 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
     felt[123] = felt[123].map(|felt_n| f64::from_bits(felt_n.to_bits() ^ 1));
     write(folder, "changed.parquet", &changed);
     let said = refused(folder, "changed.parquet");
-    assert!(said.contains("changed.parquet plays other bits: row 124, column felt_n: "), "{said}");
+    assert!(said.contains("changed.parquet does not play the same bits: row 124, column felt_n: "), "{said}");
 
     let mut version = recording.clone();
     version.metadata.frixel = "0.0.9".to_owned();

@@ -155,7 +155,7 @@ pub(crate) fn replay(py: Python<'_>, recording: Vec<u8>, name: &str) -> PyResult
         match recorded.first_difference(&played) {
             None => Ok(recorded.rows()),
             Some(difference) => Err(format!(
-                " plays other bits: {difference}; the file was changed, or this machine computes differently"
+                " does not play the same bits: {difference}; the file was changed, or this machine computes differently"
             )),
         }
     })?;

@@ -254,7 +254,7 @@ def test_the_command_plays_a_recording_again(
     changed = dataclasses.replace(recording, columns={**recording.columns, "felt_n": felt_n})
     changed.to_parquet(tmp_path / "me.parquet")
     code, said = replayed(tmp_path)
-    assert (code, f"plays other bits: row {row + 1}, column felt_n: " in said) == (1, True), said
+    assert (code, f"does not play the same bits: row {row + 1}, column felt_n: " in said) == (1, True), said
 
 
 def replayed(folder: Path) -> tuple[int, str]:

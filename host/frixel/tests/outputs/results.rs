@@ -43,7 +43,7 @@ fn no_command_replaces_its_input_a_recording_or_a_protected_file() {
                 fs::remove_file(folder.path(&written)).unwrap();
             };
             folder.write(&written, of_a_person);
-            refused(&["is a recording of a person, which no result replaces: give", "what a finger did on a board"]);
+            refused(&["is a recording of a person, which no result replaces: give", "has a play on a real board"]);
             if !output.input.is_empty() {
                 symlink(folder.path(output.input), folder.path(&written)).unwrap();
                 refused(&["is an input as well, and would be overwritten: give another "]);
@@ -98,7 +98,7 @@ fn a_file_of_an_interrupted_play_is_noted() {
     folder.write("out/felt.csv", &of_another);
     let interrupted = folder.run(line);
     assert!(whole.code == Some(0) && !whole.notes.contains("interrupted"), "{}", whole.notes);
-    assert!(interrupted.notes.contains("out/felt.csv: of an interrupted play"), "{}", interrupted.notes);
+    assert!(interrupted.notes.contains("out/felt.csv: from an interrupted play"), "{}", interrupted.notes);
     assert!(!folder.run("replay out/t.parquet").notes.contains("interrupted"));
 }
 

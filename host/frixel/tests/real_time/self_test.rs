@@ -116,7 +116,7 @@ fn a_board_that_never_stops_talking_ends_with_a_sentence() {
     for (again, said) in [
         ("noise without an end", "does not run the self-test"),
         ("a line of another program\n", "does not run the self-test"),
-        (asks.as_str(), "has said 1000 lines"),
+        (asks.as_str(), "has sent 1000 lines"),
     ] {
         let mut terminal = PseudoTerminal::open().unwrap();
         let path = terminal.path().to_owned();

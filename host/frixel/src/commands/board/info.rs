@@ -55,11 +55,11 @@ fn describe(hello: &Hello) -> String {
     lines.fold(String::new(), |text, (name, value)| text + &format!("{name:16} {value}\n"))
 }
 
-/// The largest voltage for a person whom no coating protects, at the slowest, the usual and the fastest carrier.
+/// The touch bound, whatever the coating, at the slowest, the usual and the fastest carrier.
 fn touch_bound(limits: &BoardLimits) -> String {
     let series_ohm = limits.series_resistance_ohm;
     if series_ohm.is_infinite() {
-        return "none stated: nobody may touch the electrode".to_owned();
+        return "none stated: the electrode must not be touched".to_owned();
     }
     let [slow, usual, fast] =
         [125.0, 1_000.0, 5_000.0].map(|carrier_hz| TouchBound::behind(series_ohm).voltage_max_v_peak(carrier_hz));
@@ -83,15 +83,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn info_says_what_a_person_whom_no_coating_protects_allows() {
-        assert!(touch_bound(&BoardLimits::UNSTATED).contains("nobody may touch"));
+    fn info_has_the_touch_bound_of_three_carriers() {
+        assert!(touch_bound(&BoardLimits::UNSTATED).contains("must not be touched"));
         let limits = BoardLimits { series_resistance_ohm: 68e3, ..BoardLimits::UNSTATED };
         let said = touch_bound(&limits);
         assert_eq!(said, "28.7 V peak at 125 Hz, 43.9 V at 1 kHz, 65.6 V at 5 kHz behind 68 kOhm");
     }
 
     #[test]
-    fn info_says_each_notice_in_a_sentence_with_its_cure() {
+    fn info_has_a_sentence_with_advice_for_each_notice() {
         let mut hello = Hello {
             protocol: (1, 0),
             firmware: (0, 1, 0),
@@ -112,7 +112,7 @@ mod tests {
         // Bits of a newer protocol are ignored.
         hello.notices = 0x80;
         assert!(!describe(&hello).contains("note"));
-        for (bit, cure) in [
+        for (bit, advice) in [
             (notice::OPTION_BYTES, "BOR_LEV=4 IWDG_SW=0"),
             (notice::STORED_LIMITS_REFUSED, "store them again"),
             (notice::LIMITS_ABOVE_CEILINGS, "flash a build"),
@@ -120,7 +120,7 @@ mod tests {
             hello.notices = bit;
             let said = describe(&hello);
             let notes: Vec<&str> = said.lines().filter(|line| line.starts_with("note ")).collect();
-            assert!(matches!(notes[..], [note] if note.contains(cure)), "{said}");
+            assert!(matches!(notes[..], [note] if note.contains(advice)), "{said}");
         }
     }
 }

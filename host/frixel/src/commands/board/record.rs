@@ -1,4 +1,4 @@
-//! `frixel board record`: the way of a finger on a board, as a stroke file.
+//! `frixel board record`: records the path of a finger on a board, as a stroke file.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -24,8 +24,9 @@ use crate::commands::waiting;
 
 /// Rows a second.
 const ROWS_HZ: u32 = 200;
-/// Longest time between two looks for Ctrl-C, and between two writes of rows to the file.
+/// Longest time between checks for Ctrl-C, and between writes to the file.
 const STEP: Duration = Duration::from_millis(50);
+/// Columns of the stroke file.
 const HEADER: &str = "t_s,x_mm,y_mm";
 /// How to keep the rows of a recording that was cut off.
 const CUT_OFF: &str = "add --finish to keep them";
@@ -35,8 +36,8 @@ pub(in crate::commands) struct RecordArgs {
     /// Path of the board's serial port.
     #[arg(long, required_unless_present = "finish")]
     port: Option<String>,
-    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`, or a Parquet file by the
-    /// name FILE.parquet. Until the end, its rows are CSV in a file of the same name and `.partial`.
+    /// The stroke, a CSV file with the columns `t_s,x_mm,y_mm`, for `frixel play --stroke`; Parquet if its name ends in
+    /// `.parquet`. Until the end, the rows are CSV in a file of that name with `.partial` added.
     #[arg(short, long, value_name = "FILE.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
@@ -45,10 +46,10 @@ pub(in crate::commands) struct RecordArgs {
     /// Replace an earlier recording.
     #[arg(long)]
     overwrite: bool,
-    /// Record nothing, and keep the rows of a recording that was cut off.
+    /// Record nothing; complete a recording that was cut off from its rows.
     #[arg(long)]
     finish: bool,
-    /// How long to record. Without it, until Ctrl-C.
+    /// Duration. Default: until Ctrl-C.
     #[arg(long, value_name = "S", value_parser = crate::commands::argument::seconds)]
     seconds: Option<f64>,
 }
@@ -60,7 +61,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
         let (writer, text) = recording.resume()?;
         let other = |error: TableError| {
             anyhow!(
-                "{} is no recorded stroke, which has t_s,x_mm,y_mm ({}): correct or delete the row, or record anew \
+                "{} is not a recorded stroke with t_s,x_mm,y_mm ({}): correct or delete the row, or record anew \
                  with --overwrite",
                 recording.partial().display(),
                 error.found()
@@ -86,7 +87,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
 
 fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interrupt, rows: &mut Rows) -> Result<()> {
     device.subscribe(telemetry_period_ticks(device.hello().tick_hz, ROWS_HZ))?;
-    let ends = args.seconds.map_or("Ctrl-C ends the record".to_owned(), |seconds| format!("recording for {seconds} s"));
+    let ends = args.seconds.map_or("Ctrl-C ends the recording".to_owned(), |seconds| format!("recording for {seconds} s"));
     note(format_args!("slide a finger over the screen; {ends}"));
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));
     while !interrupt.is_requested() && end.is_none_or(|end| device.now() < end) {
@@ -101,8 +102,8 @@ fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interr
     Ok(device.subscribe(0)?)
 }
 
-/// Number of the rows with a touch. The error names a row that no recording writes: another command wrote it, or a
-/// crash of the machine left zeros in its place.
+/// Returns the number of rows with a touch. Fails on a row that no recording has: the file is from another command, or
+/// a crash of the machine left zeros in it.
 fn touched(text: &str) -> Result<u64, TableError> {
     let mut table = Table::new(text.as_bytes())?;
     let t = table.need(Column::new("t_s", "seconds"))?;
@@ -130,8 +131,8 @@ fn finish(
 ) -> Result<()> {
     if touched == 0 {
         bail!(
-            "nothing is recorded, because the board saw no finger: slide one over its screen while `frixel board \
-             record` runs"
+            "nothing was recorded, because the board reported no finger: slide one over its screen while `frixel \
+             board record` runs"
         );
     }
     if parquet::is_parquet(&args.output) {
@@ -148,7 +149,7 @@ fn finish(
     say(recording, format_args!("  {:<16} {}, {seconds:.1} s of touch", "wrote", recording.path().display()))
 }
 
-/// The rows, from the first touch on.
+/// Writes the rows, from the first touch on.
 struct Rows {
     writer: FileWriter,
     tick_hz: f64,
@@ -164,7 +165,7 @@ impl Rows {
         Ok(rows)
     }
 
-    /// Adds a row while a finger is there, and one without a place when it leaves.
+    /// Adds a row while a finger touches, and a row without a place when it lifts.
     fn add(&mut self, observation: &Observation) -> Result<()> {
         if observation.finger.is_none() && !self.is_down {
             return Ok(());

@@ -24,7 +24,7 @@ const CONTACT_M2: f64 = 2e-4;
 const SCRATCH_OHM: f64 = 10e3;
 /// The gap between a fingertip and the electrode, F (assumed).
 const GAP_F: f64 = 150e-12;
-/// Ways back for the finger's current (capacitances assumed).
+/// Return paths of the finger's current (capacitances assumed).
 const RETURN_PATHS: [(&str, ReturnPath); 3] = [
     ("return contact through 100 kOhm", ReturnPath::Contact(100e3)),
     ("no contact, the common isolated: 40 pF", ReturnPath::Air(40e-12)),
@@ -32,23 +32,23 @@ const RETURN_PATHS: [(&str, ReturnPath); 3] = [
 ];
 /// Carriers of the tables, Hz: the slowest, the usual one and the fastest among them.
 const CARRIERS_HZ: [f64; 6] = [125.0, 250.0, 500.0, 1_000.0, 2_000.0, 5_000.0];
-/// Values of a decade of E96, the row of resistors of 1 %.
+/// Values per decade of E96, the series of 1 % resistors.
 const E96: u32 = 96;
-/// Decades of the halves of a series resistance, Ohm.
+/// Decades of each of two equal series resistors, Ohm.
 const SERIES_DECADES_OHM: [f64; 3] = [1e3, 1e4, 1e5];
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct SafetyArgs {
-    /// The board whose limits and series resistance count.
+    /// The board whose limits and series resistance apply.
     #[arg(long, value_name = "NAME", default_value = Board::NAMES[0], value_parser = PossibleValuesParser::new(Board::NAMES))]
     board: String,
-    /// Another resistance between amplifier and electrode, kOhm.
+    /// Resistance between amplifier and electrode in place of the board's, kOhm.
     #[arg(long, value_name = "KOHM", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
     /// The screen whose coating is touched: a screen's file, or `example`.
     #[arg(long, value_name = "NAME|FILE", default_value = "example")]
     screen: String,
-    /// The voltage for which the least series resistance is looked for, V rms.
+    /// The voltage for which to find the least series resistance, V rms.
     #[arg(long, value_name = "V", default_value_t = 150.0, value_parser = argument::positive, allow_negative_numbers = true)]
     voltage_v_rms: f64,
 }
@@ -68,7 +68,7 @@ pub(super) fn run(args: &SafetyArgs) -> Result<()> {
     ))
 }
 
-/// What the tables are computed for.
+/// Inputs of the tables.
 struct Table {
     board: Board,
     series_ohm: f64,
@@ -95,7 +95,7 @@ impl Table {
             (
                 "person",
                 "500 Ohm, and 1.5 kOhm beside 0.22 uF for the skin; currents are weighted for perception and reaction \
-                 (IEC 60990:2016, Fig. 4, unread), and nothing resists on the way back"
+                 (IEC 60990:2016, Fig. 4, unread), and the return path has no resistance"
                     .to_owned(),
             ),
             (
@@ -109,8 +109,8 @@ impl Table {
             ),
             (
                 "bound",
-                "the largest peak voltage for which no coating, thin or bridged, and no envelope lets more through; \
-                 the board refuses a scene above it, or above its own limit in the first line"
+                "the largest peak voltage that passes no more than that, for any coating, thin or bridged, and any \
+                 envelope; the board refuses a scene above it, or above its own limit in the first line"
                     .to_owned(),
             ),
         ]
@@ -118,14 +118,14 @@ impl Table {
         .fold(String::new(), |text, (name, value)| text + &format!("{name:8} {value}\n"))
     }
 
-    /// What the board's own image allows, where that is less.
+    /// A note on what the board's own image allows, if that is less.
     fn until_measured(&self) -> String {
         self.board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
             format!(" once limits are stored; nothing stores them on this board yet, and it allows {v_peak} V peak")
         })
     }
 
-    /// Why no firmware is built for the series resistance.
+    /// A note on a series resistance that no firmware can be built for.
     fn not_built(&self) -> String {
         let refusal = self.check_built(self.series_ohm).err();
         refusal.map_or_else(String::new, |error| format!("; no firmware takes that: {error}"))
@@ -196,7 +196,7 @@ impl Table {
         )
     }
 
-    /// Part of the drive's voltage that is across the finger's gap, and the part of the force, by return path.
+    /// Parts of the drive's voltage and of the force that are left at the finger's gap, by return path.
     fn return_paths(&self) -> String {
         let mut text = format!(
             "Voltage across the finger's gap, of {:.0} pF, and force there, in % of what the model takes\n",
@@ -214,7 +214,7 @@ impl Table {
     /// The least series resistance at which a voltage is within the bound, by carrier.
     fn resistances(&self, voltage_v_rms: f64) -> String {
         let mut text = format!(
-            "Least series resistance for {voltage_v_rms} V rms at the electrode, of two equal resistors of E96, edges of {:.2} nF \
+            "Least series resistance for {voltage_v_rms} V rms at the electrode, of two equal E96 resistors, edges of {:.2} nF \
              included\n",
             1e9 * self.board.limits.electrode_capacitance_max_f
         );
@@ -226,7 +226,7 @@ impl Table {
             let full_scale_v_peak = f64::from(self.board.limits.full_scale_v_peak);
             let said = match found {
                 Some(found) if found.drive_v_peak <= full_scale_v_peak => found.to_string(),
-                _ => format!("none: the edges would ask for more than the {full_scale_v_peak} V peak of the amplifier"),
+                _ => format!("none: the edges need more than the amplifier's {full_scale_v_peak} V peak"),
             };
             let _ = writeln!(text, "{carrier_hz:5.0} Hz  {said}");
         }
@@ -234,8 +234,7 @@ impl Table {
     }
 }
 
-/// Series resistances that can be soldered as two equal resistors and built in, which takes whole kOhm; from the least
-/// on.
+/// Series resistances of two equal E96 resistors, in ascending order. Firmware is built for whole kOhm only.
 fn series_ohm() -> impl Iterator<Item = f64> {
     let halves = SERIES_DECADES_OHM.into_iter().flat_map(|decade_ohm| {
         let of_decade = move |step| 0.01 * decade_ohm * (100.0 * 10_f64.powf(f64::from(step) / f64::from(E96))).round();
@@ -245,7 +244,7 @@ fn series_ohm() -> impl Iterator<Item = f64> {
     kohm.filter(|kohm| (kohm - kohm.round()).abs() < 1e-6).map(|kohm| 1e3 * kohm.round())
 }
 
-/// A way back for the finger's current, to the amplifier's common.
+/// A return path of the finger's current, to the amplifier's common.
 enum ReturnPath {
     /// The return contact, Ohm.
     Contact(f64),

@@ -1,5 +1,5 @@
-//! `frixel board selftest`: whether link, clock and telemetry of a board are in order. The output stays at zero.
-//! With `--wires`, it is the other side of the board's own self-test.
+//! `frixel board selftest`: checks link, clock and telemetry of a board, with its output at zero. With `--wires`, it
+//! is the host's side of the board's own self-test.
 
 mod report;
 mod wires;
@@ -19,7 +19,7 @@ use crate::commands::port;
 use crate::commands::terminal::print_line;
 use crate::commands::waiting;
 
-/// Most pings whose round trip is measured, and longest time for them.
+/// Largest number of pings whose round trip is measured, and longest time for them.
 const PINGS_MAX: u32 = 50;
 const PINGS_TIME_MAX: Duration = Duration::from_secs(2);
 /// Duration of the telemetry, and messages a second.
@@ -174,7 +174,7 @@ mod tests {
     };
 
     #[test]
-    fn the_worst_tick_the_histogram_and_missed_deadlines_are_said() {
+    fn the_worst_tick_the_histogram_and_missed_deadlines_are_reported() {
         let check = tick_time(Some(MEASURED));
         assert_eq!(check.passed, Some(true));
         for part in ["2131 of 3700 cycles (58 %)", "0 deadlines missed", "0 127 128 39600 300 0 0 0, late: 0"] {
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_does_not_measure_its_ticks_says_so() {
+    fn a_board_that_does_not_measure_its_ticks_is_no_failure() {
         let check = tick_time(None);
         assert_eq!((check.passed, check.found.as_str()), (None, "not measured by this board"));
     }

@@ -30,8 +30,8 @@ pub(in crate::commands) struct CalibrateArgs {
     /// `sim` for the simulator in this process, or the path of a board's serial port.
     #[arg(long, default_value = "sim")]
     port: String,
-    /// The recording, for `frixel finger fit`: CSV, or Parquet by the name DATA.parquet. Until the end, what a board
-    /// reports is CSV in a file of the same name and `.partial`.
+    /// The recording, for `frixel finger fit`: CSV, or Parquet if its name ends in `.parquet`. Until the end, a board's
+    /// reports are CSV in a file of that name with `.partial` added.
     #[arg(short, long, value_name = "DATA.csv")]
     output: PathBuf,
     /// Code of the participant, for a Parquet file: letters, digits, `-`, `_` and `.`, not a name.
@@ -40,24 +40,24 @@ pub(in crate::commands) struct CalibrateArgs {
     /// Replace an earlier recording.
     #[arg(long)]
     overwrite: bool,
-    /// Play nothing, and join the strokes of a recording that was cut off with their forces.
+    /// Play nothing; join the strokes of a recording that was cut off with their forces.
     #[arg(long)]
     finish: bool,
     /// Forces of a sensor during the run: CSV with the columns `time_s,normal_force_n,friction_n`, on any clock; `-`
-    /// for standard input. A file is there when the run begins, and is read when it is over. The simulator has a sensor
-    /// of its own, and `frixel sim` writes what one under its screen measures, forces.csv.
+    /// for standard input. A file must exist when the run begins, and is read when it is over. The simulator has a
+    /// sensor of its own; `frixel sim` writes what the sensor under its screen measures to forces.csv.
     #[arg(long, value_name = "FILE.csv")]
     forces: Option<PathBuf>,
-    /// Highest voltage, in volts rms, at most 150. Without it, 150 or what the board allows.
+    /// Highest voltage, in volts rms, at most 150. Default: 150, or the board's limit if that is lower.
     #[arg(long, value_name = "V_RMS", value_parser = plan::voltage)]
     voltage: Option<f64>,
     /// Number of strokes, 9 to 360. Each takes 1.8 s; the interval narrows with the root of their number.
     #[arg(long, value_name = "N", default_value_t = 36, value_parser = whole(9..=360_u16))]
     strokes: u16,
-    /// Simulated person: another one for each seed. Without it, the example finger.
+    /// Seed of a simulated person. Default: the example finger.
     #[arg(long, value_name = "N")]
     finger_seed: Option<u64>,
-    /// Seed of the half-periods, and of all that is random in the simulator.
+    /// Seed of the half-periods, and of the simulator's random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Let a board that is not a simulator drive its electrode.
@@ -73,9 +73,9 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
         return finish(args, &recording).map_err(|error| cut_off(&recording, CUT_OFF, error));
     }
     let interrupt = Interrupt::watch()?;
-    // A pipe is opened once.
+    // A pipe can be opened only once.
     let partial = recording.is_file().then(|| recording.record(CUT_OFF)).transpose()?;
-    // A file of forces that is missing, or of something else, is found before the run, not after it.
+    // A file of forces that is missing or invalid ends the command before the run, not after it.
     if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
         forces::read(path)?;
     }
@@ -108,7 +108,7 @@ fn write(
     let mut bytes = Vec::new();
     write_csv(&mut bytes, &rows)?;
     if parquet::is_parquet(&args.output) {
-        // What was cut off is of a board: a simulator needs no file until the end.
+        // Only a board's recording can be cut off: the simulator's file is written at the end.
         let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
         let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };
         let metadata = Metadata::new(rig, hello, is_simulated, args.participant.as_deref());

@@ -24,39 +24,39 @@ const STATED_V_RMS: f64 = 150.0;
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct FitArgs {
-    /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and, if there are,
+    /// The recording: CSV with the columns `voltage_v_rms,normal_force_n,friction_n` and optionally
     /// `time_s,stroke,speed_mm_s`, in any order; `-` for standard input. A header may state another unit, as in
-    /// `friction_mn`. A paper's table of means, with `friction_se_n` or `friction_sd_n` and `n`, is data as well
+    /// `friction_mn`. A paper's table of means, with `friction_se_n` or `friction_sd_n` and `n`, is accepted as well
     /// (docs/design/outputs.md).
     #[arg(value_name = "DATA.csv")]
     data: PathBuf,
-    /// The finger profile to write. Residual plots of the contact model stand beside it, in a file of the same name
-    /// that ends in .svg; with another law, those of an earlier fit are removed.
+    /// The finger profile to write. Residual plots of the contact model go beside it, into a file of the same name that
+    /// ends in .svg; with another law, those of an earlier fit are removed.
     #[arg(short, long, value_name = "FINGER.toml")]
     output: Option<PathBuf>,
     /// Law of the voltage: `contact`, the model, which refuses data that contradict it; or `empirical`, a power law or
-    /// what strokes show at up to 16 voltages, for this screen and load.
+    /// a table of up to 16 voltages, for this screen and load.
     #[arg(long, value_enum, default_value_t = Law::Contact, hide_possible_values = true)]
     law: Law,
     /// Print one JSON object in place of the summary.
     #[arg(long)]
     json: bool,
-    /// The screen that friction was measured on: a bundled name or a screen file (docs/design/scenes.md); without it,
-    /// the example screen. The profile holds for this screen.
+    /// The screen that friction was measured on: a bundled name or a screen file (docs/design/scenes.md). The profile
+    /// holds for this screen. Default: the example screen.
     #[arg(long, value_name = "SCREEN")]
     screen: Option<String>,
-    /// Voltage at which the contact model's electric friction is stated, in volts rms; without it, 150. An empirical
-    /// law is stated at the highest voltage of the data.
+    /// Voltage at which the contact model's electric friction is stated, in volts rms. Default: 150. An empirical law
+    /// is stated at the highest voltage of the data.
     #[arg(long, value_name = "V_RMS", value_parser = positive)]
     voltage: Option<f64>,
-    /// Normal load of the profile, in newtons; without it, the median of the data.
+    /// Normal load of the profile, in newtons. Default: the median of the data.
     #[arg(long, value_name = "N", value_parser = positive)]
     load: Option<f64>,
     /// Strokes to leave out, by their names in the column `stroke`.
     #[arg(long, value_name = "STROKE", value_delimiter = ',')]
     without: Vec<String>,
-    /// How friction was measured, in a few words for the profile; without it, `load cell, strokes with the drive
-    /// switched on and off`, or that the data are means.
+    /// How friction was measured, in a few words for the profile. Default: `load cell, strokes with the drive switched
+    /// on and off`, or `means with their errors`.
     #[arg(long, value_name = "TEXT")]
     method: Option<String>,
     /// Seed of the bootstrap that gives the intervals.
@@ -67,11 +67,10 @@ pub(in crate::commands) struct FitArgs {
 /// Laws of the voltage that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Law {
-    /// The contact model, which data that contradict it refuse.
+    /// The contact model, which refuses data that contradict it.
     Contact,
-    /// A power of the voltage that is fitted to the data, or what strokes show at each of at most 16 voltages: for a
-    /// finger that the contact model does not describe, on this screen, under this load and up to the highest voltage
-    /// of the data.
+    /// A power of the voltage that is fitted to the data, or a table of at most 16 measured voltages: for a finger that
+    /// the contact model does not describe, on this screen, under this load and up to the highest voltage of the data.
     Empirical,
 }
 
@@ -148,7 +147,7 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
     }
 }
 
-/// How friction was measured, as far as the data say it.
+/// How friction was measured, as far as the data show.
 fn method_of(division: Division) -> &'static str {
     match division {
         Division::Means => "means with their errors",
@@ -186,7 +185,7 @@ impl Outputs {
             written.push(plots.filled(drawn.as_bytes())?);
             return Ok(commit_all(written, &[])?);
         }
-        // Where there is another law, plots of an earlier fit would stand beside its profile.
+        // With another law, plots of an earlier fit do not belong to the new profile.
         Ok(commit_all(written, self.plots.as_slice())?)
     }
 

@@ -26,8 +26,8 @@ pub(super) struct LiveScene {
     watches: bool,
     /// Time of the next check of the files, on the clock of the board's link.
     check_at: Duration,
-    /// The scene that comes next. Meanwhile, the files are not checked: those of the next scene are as they were before
-    /// they were read, so that no change is missed.
+    /// The scene that comes next. Files are not checked until it is compiled; no change is missed, since the state of
+    /// its files was noted before they were read.
     next: Option<NextScene>,
 }
 
@@ -50,7 +50,7 @@ enum Origin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReplaceOutcome {
     Plays,
-    /// The board refused it, and the scene before plays on.
+    /// The board refused it, and the previous scene keeps playing.
     Refused,
 }
 
@@ -80,7 +80,7 @@ impl Loader {
 }
 
 impl LiveScene {
-    /// `files` are those of the first scene.
+    /// Creates it for a play of `args`. `files` are those of the first scene.
     pub(super) fn new(args: &PlayArgs, target: Target, files: SceneFiles, outputs: PlayFiles) -> Self {
         let loader = Loader { profiles: args.profiles.names(), target, outputs };
         Self { loader, files, watches: args.watch, check_at: Duration::ZERO, next: None }
@@ -91,8 +91,8 @@ impl LiveScene {
         self.compile(path.to_owned(), Origin::Other, player);
     }
 
-    /// Plays the next scene once it is compiled. Without one, compiles the scene that plays anew if one of its files
-    /// was saved. Returns the files of a scene that was put on the board, and what became of it.
+    /// Plays the next scene once it is compiled. Without a next scene, compiles the current one again if one of its
+    /// files was saved. Returns the files of a scene that was put on the board, and the outcome.
     pub(super) fn refresh<L: RecordedLink>(
         &mut self,
         player: &mut Player<L>,
@@ -111,7 +111,7 @@ impl LiveScene {
         Ok(None)
     }
 
-    /// Plays a compiled scene. The files of another scene that cannot be played are not watched.
+    /// Plays a compiled scene. Watches the files of another scene only if it plays.
     fn play<L: RecordedLink>(
         &mut self,
         origin: Origin,
@@ -119,11 +119,11 @@ impl LiveScene {
         player: &mut Player<L>,
     ) -> Result<Option<(SceneFiles, ReplaceOutcome)>, PlayError> {
         let how = if origin == Origin::Saved { " as it was saved" } else { "" };
-        let fate = replace(files.path(), how, program, player)?;
-        if origin == Origin::Saved || fate == Some(ReplaceOutcome::Plays) {
+        let outcome = replace(files.path(), how, program, player)?;
+        if origin == Origin::Saved || outcome == Some(ReplaceOutcome::Plays) {
             self.files = files.clone();
         }
-        Ok(fate.map(|fate| (files, fate)))
+        Ok(outcome.map(|outcome| (files, outcome)))
     }
 
     fn check_files<L: RecordedLink>(&mut self, player: &Player<L>) {
@@ -131,7 +131,7 @@ impl LiveScene {
         if self.files.has_vanished() {
             let path = self.files.path().display();
             note(format_args!(
-                "frixel: {path} is gone: the previous scene keeps playing, until the file is there again"
+                "frixel: {path} is gone: the previous scene keeps playing until the file is there again"
             ));
         }
         if is_saved {
@@ -147,8 +147,8 @@ impl LiveScene {
     }
 }
 
-/// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board rejects it, prints
-/// why, and keeps the earlier scene playing. Returns what became of it on the board; `None` if it was not put there.
+/// Plays a compiled scene, and prints its file and `how` it plays. If it has errors or the board refuses it, prints
+/// why, and keeps the previous scene playing. Returns the outcome on the board; `None` if the scene was not put there.
 fn replace<L: RecordedLink>(
     path: &Path,
     how: &str,
@@ -239,7 +239,7 @@ mod tests {
             fs::write(self.folder.path().join(name), text).unwrap();
         }
 
-        /// Compiles the scene as it is now; the compiler is done when something is sent.
+        /// Compiles the scene as it is now; the compiler ends when the returned sender sends.
         fn compile_until_sent(&mut self) -> Sender<()> {
             let (loader, path) = (self.live.loader.clone(), self.live.files.path().to_owned());
             let (limits, tick_hz) = loader.target.limits(self.player.device().hello());
@@ -261,7 +261,7 @@ mod tests {
             self.player.step(Duration::from_millis(1)).unwrap();
         }
 
-        /// Lets the compiler end, if it is not held.
+        /// Waits for the compiler, then refreshes.
         fn refresh_compiled(&mut self) {
             while self.live.next.as_ref().is_some_and(|next| !next.compiling.is_finished()) {
                 thread::yield_now();

@@ -29,7 +29,7 @@ pub(super) struct PlayFiles {
     summary: OutputFile,
     /// `felt.svg`, or `commanded.svg` where felt friction is unknown.
     svg: OutputFile,
-    /// The other one of the two, which an earlier play may have left.
+    /// The other of the two, which an earlier play may have left.
     other_svg: OutputFile,
     png: OutputFile,
     /// The file of `--record`, and what its recording is made from.
@@ -37,9 +37,9 @@ pub(super) struct PlayFiles {
 }
 
 impl PlayFiles {
-    /// Rejects a play whose files would overwrite an input, or what a person's finger did on a board.
+    /// Rejects a play whose files would overwrite an input, or an earlier play on a real board.
     pub(super) fn new(args: &PlayArgs, target: Target, scene: &SceneFiles) -> Result<Self> {
-        // Without a finger that is simulated beside the board, what was felt is unknown.
+        // A real board does not report felt friction.
         let is_felt = target.is_virtual_time() || args.with_log.is_some();
         let (svg, other_svg) = if is_felt { ("felt.svg", "commanded.svg") } else { ("commanded.svg", "felt.svg") };
         let others = [args.stroke.file(), args.stream.file(), args.with_log.as_deref(), args.touch.file()];
@@ -64,20 +64,20 @@ impl PlayFiles {
         Ok(Self { record, ..files })
     }
 
-    /// Rejects a play that would replace what a person's finger did on a board.
+    /// Rejects a play that would replace an earlier play on a real board.
     fn check_earlier(args: &PlayArgs) -> Result<()> {
         let is_kept = |name| is_of_person(&args.out.join(name));
         if !args.overwrite && (is_kept("felt.csv") || is_kept("summary.json")) {
             bail!(
-                "{} has what a finger did on a board, which no other play replaces: give another folder to {OPTION}, \
-                 or add --overwrite",
+                "{} has a play on a real board, which no other play replaces: give another folder to {OPTION}, or add \
+                 --overwrite",
                 args.out.display()
             );
         }
         Ok(())
     }
 
-    /// Rejects files that would overwrite one of another scene.
+    /// Rejects output files that would overwrite a file of another scene.
     pub(super) fn check(&self, scene: &SceneFiles) -> Result<()> {
         let inputs = Inputs::new(scene.paths());
         for file in [&self.felt, &self.summary, &self.svg, &self.other_svg, &self.png] {
@@ -91,7 +91,7 @@ impl PlayFiles {
         self.record.as_ref().map(|(_, sources)| sources)
     }
 
-    /// Starts to write `felt.csv`. What a person's finger does on a board cannot be computed again.
+    /// Starts to write `felt.csv`: as a recording on a real board, since a person's movements cannot be repeated.
     fn start(&self, is_simulated: bool, args: &PlayArgs) -> Result<FeltCsv> {
         if is_simulated {
             return FeltCsv::new(self.felt.create()?);
@@ -118,17 +118,16 @@ pub(super) struct Outputs {
     /// Whether finger or board is simulated.
     is_simulated: bool,
     touched: TouchedLayers,
-    /// When the scene that plays replaced the one before, s.
+    /// Time at which the current scene replaced the previous one, s.
     replaced_at_s: Option<f64>,
-    /// The layers of the scene that are off, by index, from a time on, s.
+    /// Indices of the scene's layers that are off, each list from a time on, s.
     off: Vec<(f64, Vec<usize>)>,
     /// The log that the rows are joined with.
     log: Option<LogJoin>,
 }
 
 impl Outputs {
-    /// Starts to write `felt.csv`, and the file of `--record` if there is its metadata. Creates the folder if
-    /// necessary.
+    /// Starts to write `felt.csv`, and with `metadata` the file of `--record`. Creates the folder if necessary.
     pub(super) fn create(
         args: &PlayArgs,
         files: PlayFiles,
@@ -137,7 +136,7 @@ impl Outputs {
         metadata: Option<Metadata>,
     ) -> Result<Self> {
         let folder = OutputFolder::open(&args.out)?;
-        // The play that wrote into the folder until now may have been of a person.
+        // The play that held the lock until now may have been on a real board.
         PlayFiles::check_earlier(args)?;
         let csv = files.start(is_simulated, args)?;
         let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| RecordFile::start(output, metadata);
@@ -159,8 +158,8 @@ impl Outputs {
         })
     }
 
-    /// Writes rows and flushes them to the file; with a log, those that it has reached. `markers` are all so far, and
-    /// `start_s` is the time from the power-on of the board to time zero of the rows.
+    /// Writes rows and flushes them to the file; with a log, the rows that it has reached. `markers` are all markers so
+    /// far, and `start_s` is the time from the power-on of the board to time zero of the rows.
     pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker], start_s: f64) -> Result<()> {
         let rows = rows.iter().map(|row| (*row, self.touch(row))).collect();
         let rows = match &mut self.log {
@@ -182,7 +181,7 @@ impl Outputs {
         self.csv.flush()
     }
 
-    /// Notes which layers the finger touches. Returns the topmost one.
+    /// Notes the layers under the finger, and returns the topmost.
     fn touch(&mut self, row: &FeltRow) -> Option<TracedLayer> {
         let (x_mm, y_mm) = row.x_mm.zip(row.y_mm)?;
         let off = self.off.iter().rfind(|(from_s, _)| *from_s < row.t_s).map(|(_, off)| &off[..]);
@@ -194,7 +193,7 @@ impl Outputs {
         Some(self.trace.layer(self.touched.title(layer)?, is_off))
     }
 
-    /// Says which layers of the scene are off from a time on, by index.
+    /// Sets the indices of the layers that are off from a time on.
     pub(super) fn switch(&mut self, t_s: f64, off: Vec<usize>) {
         if self.off.last().is_none_or(|(_, last)| *last != off) {
             self.off.push((t_s, off));
@@ -208,21 +207,21 @@ impl Outputs {
         self.off.clear();
     }
 
-    /// Keeps a scene that was put on the board at a time, and maybe refused by it, for the file of `--record`.
+    /// Adds a scene that was put on the board at a time, and perhaps refused, to the file of `--record`.
     pub(super) fn keep_scene(&mut self, t_s: f64, scene: &SceneFiles, is_refused: bool) {
         if let Some(record) = &mut self.record {
             record.add_scene(t_s, scene, is_refused);
         }
     }
 
-    /// Keeps the lines of `--control` for that file.
+    /// Adds the lines of `--control` to the file of `--record`.
     pub(super) fn keep_lines(&mut self, lines: &[String]) {
         if let Some(record) = &mut self.record {
             record.set_lines(lines);
         }
     }
 
-    /// Keeps samples that were streamed for that file.
+    /// Adds streamed samples to the file of `--record`.
     pub(super) fn keep_samples(&mut self, samples: &[u16]) {
         if let Some(record) = &mut self.record {
             record.add_samples(samples);
@@ -234,7 +233,7 @@ impl Outputs {
         self.is_simulated
     }
 
-    /// When the scene of [`Self::untouched_layers`] replaced the one before, s.
+    /// Time at which the current scene replaced the previous one, s; `None` for the first scene.
     pub(super) fn replaced_at_s(&self) -> Option<f64> {
         self.replaced_at_s
     }
@@ -244,9 +243,9 @@ impl Outputs {
         self.touched.untouched().filter_map(|layer| self.touched.title(layer)).cloned().collect()
     }
 
-    /// Completes `felt.csv` and the file of `--record`, draws `felt.svg`, or `commanded.svg` for a board at a port, and
-    /// `scene.png`, and writes `summary.json`, which has their hashes. Returns the paths of the files. If one of them
-    /// cannot be written, the earlier ones stay unchanged, and the rows of a person are in `felt.csv.partial`.
+    /// Completes `felt.csv` and the file of `--record`, draws `scene.png` and `felt.svg` (`commanded.svg` for a board
+    /// at a port), and writes `summary.json`, which has their hashes. Returns the paths of the files. If a file cannot
+    /// be written, the files of an earlier play stay unchanged, and the rows of a real board are in `felt.csv.partial`.
     pub(super) fn finish(
         mut self,
         program: &Program,
@@ -265,7 +264,7 @@ impl Outputs {
         }
     }
 
-    /// Writes all files, which have no names yet, the summary last.
+    /// Writes all files under temporary names, the summary last.
     fn write_all(self, program: &Program, report: &Report, marked: (&[Marker], bool)) -> Result<Vec<FileWriter>> {
         let subject = Subject { name: self.title, simulated: self.is_simulated, draft: report.draft };
         let svg = draw_felt_svg(&subject, &self.trace, &program.reach)?;
@@ -279,7 +278,7 @@ impl Outputs {
             (name, file.sha256())
         };
         let files = written.iter().map(named).collect();
-        // The speed of the simulation is another one each time, and equal plays give equal files.
+        // The speed of the simulation varies, and equal plays give equal files.
         let reproducible = Report { realtime_factor: None, files, ..report.clone() };
         written.push(summary.filled((reproducible.to_json() + "\n").as_bytes())?);
         Ok(written)
@@ -317,7 +316,7 @@ mod tests {
         PlayFiles::new(args, Target::Port, &scene).unwrap()
     }
 
-    /// The summary is written at the end: a play that begins before it sees nothing of the person.
+    /// The earlier play writes its summary at its end, after the later play has checked for one.
     #[test]
     fn a_play_of_a_person_that_ends_while_another_one_begins_is_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
@@ -329,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_person_did_stays_as_a_recording_where_the_other_files_fail() {
+    fn rows_of_a_real_board_stay_as_a_recording_where_the_other_files_fail() {
         let folder = tempfile::tempdir().unwrap();
         let args = PlayArgs::ideal("a.toml".as_ref(), folder.path()).unwrap();
         fs::create_dir(folder.path().join(".scene.png.frixel-tmp")).unwrap();

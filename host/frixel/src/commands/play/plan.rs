@@ -1,4 +1,4 @@
-//! The plan of a play, which is checked as a whole before any file is written.
+//! The plan of a play, checked as a whole before any file is written.
 
 use frixel_lab::simulate::{check_duration, screen_m, ticks_per_row};
 use std::time::Duration;
@@ -48,16 +48,16 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
     }
     match target {
         Target::Emulator | Target::Pico if args.watch => bail!(
-            "--watch follows the file while a board plays in real time, --port {port} does not: start `frixel sim` and \
-             give its port"
+            "--watch follows the file while a board plays in real time, which --port {port} does not: start `frixel \
+             sim` and give its port"
         ),
         Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => bail!(
-            "--watch on the simulator plays anew after each change, and standard input can be read only once: leave \
+            "--watch on the simulator plays again after each change, and standard input can be read only once: leave \
              out --control or --stream -, or start `frixel sim` and give its port"
         ),
         Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => bail!(
-            "--with-log joins the log of a virtual board at a port, --port {port} records what is felt itself: leave \
-             it out"
+            "--with-log joins the log of a virtual board at a port, and --port {port} records what is felt itself: \
+             leave --with-log out"
         ),
         Target::Emulator | Target::Pico if args.stream.is_given() => {
             bail!(
@@ -73,7 +73,7 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
              pico only; a board at {port} has its own: leave them out"
         ),
         Target::Port if csv_hz > TELEMETRY_MAX_HZ => bail!(
-            "{port} sends telemetry at most {TELEMETRY_MAX_HZ} times a second, --csv-hz {csv_hz} is more; give \
+            "{port} sends telemetry at most {TELEMETRY_MAX_HZ} times a second, and --csv-hz {csv_hz} is more: give \
              {TELEMETRY_MAX_HZ} or less"
         ),
         Target::Port if args.watch && args.stream.is_given() => bail!(
@@ -123,8 +123,8 @@ impl Plan {
         })
     }
 
-    /// What the options simulate around the board of `rig`. Without `--seconds`, the play lasts as long as the file of
-    /// `--stream`, while the finger repeats its stroke, or else as long as the stroke.
+    /// The simulation that the options describe around the board of `rig`. Without `--seconds`, the play lasts as long
+    /// as the file of `--stream`, while the finger repeats its stroke, or else as long as the stroke.
     pub(super) fn simulation(&mut self, args: &PlayArgs, scene: &Scene, rig: &RigConfig) -> Result<&Simulation> {
         let inputs = (args.stroke.file().map(from_file).transpose()?, args.touch.source()?);
         let simulation = args.options(self.stream_s).simulation(scene, &self.program, inputs, rig);
@@ -187,7 +187,7 @@ pub(super) fn print_notes(program: &Program) {
     }
 }
 
-/// Says when layers get no samples. A board refuses a stream that no layer plays.
+/// Prints a note on layers that get no samples.
 fn note_streams(program: &Program, has_feed: bool) {
     let streamed = program.records.iter().zip(&program.titles).filter(|(record, _)| record.layer.is_streamed());
     let titles: Vec<&str> = streamed.map(|(_, title)| title.as_str()).collect();

@@ -19,15 +19,15 @@ use super::PlayArgs;
 const OPTION: &str = "--record";
 /// Advice on how to keep the rows of an interrupted play on a board.
 const CUT_OFF: &str = "rename it to keep it";
-/// Most time of a person's play that is lost when the process is killed, s.
+/// Longest part of a person's play that is lost when the process is killed, s.
 const PERSON_GROUP_S: u32 = 10;
 
-/// The file that `--record` names; none without that option.
+/// The file that `--record` names; `None` without that option.
 pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFile>> {
     let Some(path) = &args.record else { return Ok(None) };
     if !parquet::is_parquet(path) && path != Path::new("-") && !path.starts_with("/dev") {
         let path = path.display();
-        bail!("{path} is no Parquet file by its name: give --record a name that ends in .parquet");
+        bail!("{path} is not the name of a Parquet file: give --record a name that ends in .parquet");
     }
     Ok(Some(OutputFile::replacing(path, OPTION, inputs, args.overwrite)?))
 }
@@ -45,8 +45,8 @@ pub(super) struct RecordFile {
 }
 
 impl RecordFile {
-    /// Begins the file. What a person's finger does goes to `FILE.partial`, which is a whole Parquet file after each
-    /// row group; a play on a simulator can be made again.
+    /// Begins the file. A play on a real board goes to `FILE.partial`, which is a whole Parquet file after each row
+    /// group; a simulated play can be repeated.
     pub(super) fn start(output: &OutputFile, metadata: Metadata) -> Result<Self> {
         let (file, rows_per_group) = if metadata.is_simulated {
             (output.create()?, ROWS_PER_GROUP)
@@ -61,7 +61,7 @@ impl RecordFile {
         Ok(Self { file, parquet, metadata, samples, rows: Vec::new(), rows_per_group })
     }
 
-    /// Adds rows. `markers` are all so far.
+    /// Adds rows. `markers` are all markers so far.
     pub(super) fn write(&mut self, rows: &[FeltRow], markers: &[Marker]) -> Result<()> {
         for row in rows {
             self.rows.push(*row);
@@ -72,18 +72,18 @@ impl RecordFile {
         Ok(())
     }
 
-    /// Another scene was put on the board at a time.
+    /// Adds a scene that was put on the board at a time.
     pub(super) fn add_scene(&mut self, t_s: f64, scene: &SceneFiles, is_refused: bool) {
         let files = scene.named_bytes().iter().map(|(name, bytes)| (name.clone(), bytes.as_slice()));
         self.metadata.add_scene((t_s, scene.scene_text(), is_refused), files);
     }
 
-    /// These lines of `--control` were carried out, in all.
+    /// Sets the lines of `--control` that were carried out so far.
     pub(super) fn set_lines(&mut self, lines: &[String]) {
         self.metadata.play["lines"] = lines.into();
     }
 
-    /// These samples were streamed next.
+    /// Adds the next streamed samples.
     pub(super) fn add_samples(&mut self, samples: &[u16]) {
         if let Some(streamed) = &mut self.samples {
             let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
@@ -91,7 +91,7 @@ impl RecordFile {
         }
     }
 
-    /// Writes what is left. The caller commits the file.
+    /// Writes the remaining rows. The caller commits the file.
     pub(super) fn finish(mut self, markers: &[Marker], interrupted: bool) -> Result<FileWriter> {
         self.metadata.play["interrupted"] = interrupted.into();
         if let Some(samples) = self.samples.take() {
@@ -105,7 +105,7 @@ impl RecordFile {
         self.write_group(markers, !self.metadata.is_simulated)
     }
 
-    /// Writes a row group, with a footer behind it if the file has to be whole then.
+    /// Writes a row group, and a footer if `is_whole`.
     fn write_group(&mut self, markers: &[Marker], is_whole: bool) -> Result<()> {
         let Self { file, parquet, metadata, rows, .. } = self;
         if !rows.is_empty() {
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// A record of what a person did on a board, at 1,000 rows a second.
+    /// A recording on a real board, at 1,000 rows a second.
     fn start(folder: &Path) -> Result<RecordFile> {
         let output = OutputFile::new(&folder.join("me.parquet"), OPTION, &Inputs::default())?;
         let metadata = Metadata { tick_hz: 40_000, ticks_per_row: 40, ..Metadata::default() };

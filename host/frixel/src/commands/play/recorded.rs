@@ -1,4 +1,4 @@
-//! What the recording of a play says about how it was made.
+//! Origin of a play, as its recording stores it: scene, files, profiles and options.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::scene_file::SceneFiles;
 use super::PlayArgs;
 use super::plan::Plan;
 
-/// What a play is made from, apart from its options.
+/// Inputs of a play, apart from its options.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sources {
     scene: String,
@@ -25,7 +25,7 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Reads the files of profiles and stroke; those of the scene are as they were read.
+    /// Reads the files of profiles and stroke; those of the scene have been read already.
     pub(super) fn new(args: &PlayArgs, scene: &SceneFiles) -> Result<Self> {
         let names = args.profiles.names();
         let (finger, screen) = (names.finger_file(), names.screen_file());
@@ -61,7 +61,7 @@ impl Sources {
     }
 }
 
-/// What is known of a play on a board before it begins.
+/// Metadata of a play before it begins.
 pub(super) fn metadata<L: Link>(
     args: &PlayArgs,
     sources: &Sources,

@@ -19,7 +19,7 @@ pub(in crate::commands) struct ReplayArgs {
     recording: PathBuf,
 }
 
-/// Plays a recording again, and says whether its bits are the same.
+/// Plays a recording again, and fails if its bits differ.
 pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let path = &args.recording;
     let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
@@ -32,7 +32,7 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
     if let Some(difference) = recorded.first_difference(&played) {
         bail!(
-            "{} plays other bits: {difference}; the file was changed, or this machine computes differently",
+            "{} does not play the same bits: {difference}; the file was changed, or this machine computes differently",
             path.display()
         );
     }

@@ -1,4 +1,4 @@
-//! How the boards that `--port` can name are opened for a play.
+//! Opens the board that `--port` names, and plays on it.
 
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
@@ -56,7 +56,7 @@ pub(super) fn play_on_emulator(
     Err(crate::commands::error::no_pseudo_terminal("--port qemu"))
 }
 
-/// Rejects the emulator, which is there for Unix only, with the other one.
+/// Rejects the emulator, which is built for Unix only.
 #[cfg(not(unix))]
 pub(super) fn play_on_pico(
     _: &PlayArgs,

@@ -1,4 +1,4 @@
-//! `--stream`: where samples for stream layers come from.
+//! `--stream`: the source of the samples for stream layers.
 
 use std::io::stdin;
 use std::path::{Path, PathBuf};
@@ -46,8 +46,7 @@ impl StreamArgs {
         match (&self.stream, self.stream_hz) {
             (None, None) => Ok(None),
             (None, Some(_)) => bail!(
-                "--stream-hz says how many samples a second come on standard input: put --stream - before it, or \
-                 leave it out"
+                "--stream-hz is the sample rate of standard input: put --stream - before it, or leave it out"
             ),
             (Some(_), Some(sample_hz)) if self.is_standard_input() => {
                 Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))

@@ -9,8 +9,8 @@ use crate::output::{FeltLog, TracedLayer};
 use anyhow::{Result, anyhow};
 use frixel_felt::recorder::FeltRow;
 
-/// How long to wait at the end for the virtual board to write its last rows; it writes ten times a second.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Longest wait at the end for the virtual board to write its last rows; it writes ten times a second.
+const END_WAIT_MAX: Duration = Duration::from_secs(2);
 const RETRY_AFTER: Duration = Duration::from_millis(50);
 /// Length of the rows that wait before the log is read again, s.
 const READ_AFTER_S: f64 = 0.1;
@@ -20,7 +20,7 @@ const BEHIND_MAX_S: f64 = 10.0;
 /// A row, with the layer under the finger.
 pub(super) type LayeredRow = (FeltRow, Option<TracedLayer>);
 
-/// Rows that wait for the log to reach their time. After a failure they are passed on as they are.
+/// Rows that wait for the log to reach their time. After a failure they are passed on unjoined.
 pub(super) struct LogJoin {
     log: FeltLog,
     /// Time from the power-on of the board to the client's time zero.
@@ -48,12 +48,12 @@ impl LogJoin {
         joined
     }
 
-    /// Waits for the log to reach the last row. Returns the rows that are left, and why some of them are not joined.
+    /// Waits for the log to reach the last row. Returns the remaining rows, and an error if some are not joined.
     pub(super) fn finish(mut self) -> (Vec<LayeredRow>, Result<()>) {
         let started = Instant::now();
         let mut joined = self.join();
         while !self.waiting.is_empty() {
-            if started.elapsed() > PATIENCE {
+            if started.elapsed() > END_WAIT_MAX {
                 self.failure = Some(self.too_short());
             } else {
                 sleep(RETRY_AFTER);
@@ -63,7 +63,7 @@ impl LogJoin {
         (joined, self.failure.map_or(Ok(()), Err))
     }
 
-    /// Takes out the rows that the log has reached, joined; after a failure all of them, as they are.
+    /// Removes and returns the rows that the log has reached, joined; after a failure all of them, unjoined.
     fn join(&mut self) -> Vec<LayeredRow> {
         let Some((first, _)) = self.waiting.front() else { return Vec::new() };
         if self.failure.is_none() {
@@ -102,7 +102,7 @@ mod tests {
 
     const ROWS_PER_S: u32 = 1_000;
 
-    /// Seconds of rows, from one time to another.
+    /// Rows from one time to another.
     fn rows(from_s: u32, to_s: u32) -> Vec<LayeredRow> {
         let row = |number: u32| FeltRow { t_s: f64::from(number) / f64::from(ROWS_PER_S), ..FeltRow::default() };
         (from_s * ROWS_PER_S..to_s * ROWS_PER_S).map(|number| (row(number), None)).collect()

@@ -1,4 +1,4 @@
-//! The report of a board's self-test: what anyone can send in.
+//! The report of a board's self-test, as JSON.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,11 @@ use chrono::Utc;
 use frixel_board::self_test::{LineTest, Measurement, ScriptLine};
 use serde::Serialize;
 
-/// What the file is, and the version of its form.
+/// Name of the file's format, and its version.
 const FORMAT: &str = "frixel self-test";
 const VERSION: u32 = 1;
 
-/// The report. Fields are only added; a change of what one means changes the version.
+/// The report. Fields are only added; changing the meaning of a field changes the version.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     format: &'static str,
@@ -22,7 +22,7 @@ pub(super) struct Report {
     /// Kind of board, and version of its script.
     board: String,
     script_version: u32,
-    /// Whether the script came to its end with every measurement in its range.
+    /// Whether the script ran to its end with every measurement in its range.
     passed: bool,
     /// Why the script ended early.
     stopped: Option<String>,
@@ -37,7 +37,7 @@ pub(super) struct Report {
     has_ended: bool,
 }
 
-/// A measurement. Its unit stands at the end of its name.
+/// A measurement, whose name ends in its unit.
 #[derive(Debug, Serialize)]
 struct Found {
     name: String,
@@ -67,7 +67,7 @@ impl Report {
         }
     }
 
-    /// Takes a line of the board.
+    /// Adds a line that the board sent.
     pub(super) fn take(&mut self, line: &str) {
         self.said.push(line.to_owned());
         match ScriptLine::parse(line) {
@@ -89,7 +89,7 @@ impl Report {
         }
     }
 
-    /// Takes what has arrived here while the line was tested.
+    /// Adds the measurements of the line test on this side.
     pub(super) fn take_line(&mut self, line: &LineTest) {
         for measurement in [
             Measurement { name: "host_blocks_received", found: line.received(), range: Some((1, u32::MAX)) },

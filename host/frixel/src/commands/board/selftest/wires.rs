@@ -17,34 +17,35 @@ use frixel_files::{Inputs, OutputFile};
 
 /// Longest silence of a board that runs the self-test: it counts the clocks of 10,000 frames meanwhile.
 const SILENCE_MAX: Duration = Duration::from_secs(20);
-/// Handshake timeout; also the retry interval.
+/// Longest time for the first line of the script.
 const FIRST_LINE_MAX: Duration = Duration::from_secs(6);
+/// Retry interval of the handshake, and of the line test's end.
 const ASK_AGAIN_AFTER: Duration = Duration::from_secs(2);
-/// How long a read waits.
+/// Timeout of a read.
 const READ_WAIT: Duration = Duration::from_millis(2);
-/// Silence after the last block, by which the board's side of the test is over.
+/// Silence after the last block that ends the line test.
 const LINE_SILENCE: Duration = Duration::from_secs(1);
-/// Time after the last block, by which the test is over even if the board goes on. A simulated board on a busy machine
-/// takes several times as long as the test to read what was sent.
+/// Longest time after the last block until the line test ends, even without silence. A simulated board on a busy
+/// machine takes several times as long as the test to read the blocks.
 const LINE_END_MAX: Duration = Duration::from_secs(30);
 /// Longest line of the script, in bytes; a longer one is noise, and is taken in pieces.
 const SCRIPT_LINE_MAX_BYTES: usize = 1024;
-/// Most lines of a board: some ten times those of the script.
+/// Largest number of lines from a board: some ten times that of the script.
 const SCRIPT_LINES_MAX: usize = 1000;
 /// Bytes a second at 8 data bits, a start bit and a stop bit.
 const LINE_BYTES_PER_S: f64 = DEFAULT_BAUD as f64 / 10.0;
-/// Prefix of a word that the board waits for.
-const ASKS: &str = "Then type: ";
+/// Prefix of the word that the board waits for.
+const PROMPT: &str = "Then type: ";
 
-/// Does the self-test of the board at a port.
+/// Runs the self-test of the board at a port.
 pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<()> {
     let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
     let link = port::open(port, &[])?;
-    let mut host = Host { link, heard: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
+    let mut host = Host { link, received: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
         print_line(format_args!("The line will be tested for {line_seconds} s; `--seconds` changes that."))?;
     }
-    let talked = host.talk(port);
+    let ended = host.run_script(port);
     let report = host.report;
     for line in report.of_line() {
         print_line(line)?;
@@ -52,7 +53,7 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
     if let Some(output) = output {
         output.write(&report.to_json().map_err(|error| writing(output.path())(error.into()))?)?;
     }
-    talked?;
+    ended?;
     match (report.stopped(), report.failed()) {
         (Some(reason), _) => bail!("the board at {port} has ended the self-test: {}", reason.trim_end_matches('.')),
         (None, 0) => print_line("Passed."),
@@ -66,18 +67,18 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
 struct Host {
     link: SerialLink,
     /// Bytes of a line that has not ended yet.
-    heard: Vec<u8>,
+    received: Vec<u8>,
     report: Report,
     line_seconds: u32,
-    /// Whether the board has sent nothing since the test of the line.
+    /// Whether the board has sent nothing since the line test.
     line_was_tested: bool,
 }
 
 impl Host {
     /// Answers the board until its last line.
-    fn talk(&mut self, port: &str) -> Result<()> {
+    fn run_script(&mut self, port: &str) -> Result<()> {
         let begun = Instant::now();
-        let (mut is_first, mut heard_at, mut lines) = (true, begun, 0);
+        let (mut is_first, mut received_at, mut lines) = (true, begun, 0);
         while !self.report.has_ended() {
             if is_first && (begun.elapsed() >= FIRST_LINE_MAX || lines == SCRIPT_LINES_MAX) {
                 bail!(
@@ -87,30 +88,30 @@ impl Host {
             }
             if lines == SCRIPT_LINES_MAX {
                 bail!(
-                    "the board at {port} has said {SCRIPT_LINES_MAX} lines and has not ended the self-test: check the \
+                    "the board at {port} has sent {SCRIPT_LINES_MAX} lines and has not ended the self-test: check the \
                      line's rate and its cable, press the reset button, and begin again"
                 );
             }
-            // The board may have asked before anyone listened, or waits for the end of the line's test.
+            // The board may have asked before the port was open, or may wait for the end of the line test.
             let is_nudged = is_first || self.line_was_tested;
             let Some(line) = self.line(if is_nudged { ASK_AGAIN_AFTER } else { SILENCE_MAX })? else {
-                if is_nudged && heard_at.elapsed() < SILENCE_MAX {
+                if is_nudged && received_at.elapsed() < SILENCE_MAX {
                     self.type_line("")?;
                     continue;
                 }
                 let seconds = SILENCE_MAX.as_secs();
-                bail!("the board at {port} has said nothing for {seconds} s: press its reset button, and begin again");
+                bail!("the board at {port} has sent nothing for {seconds} s: press its reset button, and begin again");
             };
-            heard_at = Instant::now();
+            received_at = Instant::now();
             lines += 1;
-            // Noise, or a firmware that speaks frames, is no line of the script.
-            is_first &= !line.contains(ASKS);
+            // Noise, or frames of another firmware, may come before the script.
+            is_first &= !line.contains(PROMPT);
             self.line_was_tested = false;
             self.report.take(&line);
             print_line(&line)?;
-            if let Some((_, word)) = line.split_once(ASKS) {
+            if let Some((_, word)) = line.split_once(PROMPT) {
                 self.answer(word.trim())?;
-                heard_at = Instant::now();
+                received_at = Instant::now();
             }
         }
         Ok(())
@@ -134,7 +135,7 @@ impl Host {
         self.type_line(LINE_TEST)?;
         let mut test = LineTest::new();
         let (begun, length) = (Instant::now(), Duration::from_secs(self.line_seconds.into()));
-        let (mut sent, mut heard_at) = (0.0, begun);
+        let (mut sent, mut received_at) = (0.0, begun);
         loop {
             let elapsed = begun.elapsed();
             if elapsed < length {
@@ -145,13 +146,13 @@ impl Host {
                     let len = bytes.len();
                     test.advance(len);
                 }
-            } else if heard_at.elapsed() > LINE_SILENCE || elapsed > length + LINE_END_MAX {
+            } else if received_at.elapsed() > LINE_SILENCE || elapsed > length + LINE_END_MAX {
                 break;
             }
             let mut bytes = Vec::new();
             self.link.read(&mut bytes, READ_WAIT)?;
             if !bytes.is_empty() {
-                heard_at = Instant::now();
+                received_at = Instant::now();
                 test.take(&bytes);
             }
         }
@@ -165,29 +166,30 @@ impl Host {
         Ok(())
     }
 
-    /// The next line of the board that is not empty; `None` if no line ends within `patience`.
-    fn line(&mut self, patience: Duration) -> Result<Option<String>> {
+    /// The board's next line that is not empty; `None` if no line ends within `timeout`.
+    fn line(&mut self, timeout: Duration) -> Result<Option<String>> {
         let begun = Instant::now();
         loop {
-            while let Some(len) = line_len(&self.heard) {
-                let line: Vec<u8> = self.heard.drain(..len).collect();
+            while let Some(len) = line_len(&self.received) {
+                let line: Vec<u8> = self.received.drain(..len).collect();
                 let line = String::from_utf8_lossy(&line).trim().to_owned();
                 if !line.is_empty() {
                     return Ok(Some(line));
                 }
             }
-            if begun.elapsed() > patience {
+            if begun.elapsed() > timeout {
                 return Ok(None);
             }
-            self.link.read(&mut self.heard, READ_WAIT)?;
+            self.link.read(&mut self.received, READ_WAIT)?;
         }
     }
 }
 
-/// Bytes of the first line with its end, or of a piece of one that is too long; `None` if more may follow.
-fn line_len(heard: &[u8]) -> Option<usize> {
-    let end = heard.iter().take(SCRIPT_LINE_MAX_BYTES).position(|byte| *byte == b'\n');
-    end.map(|end| end + 1).or((heard.len() >= SCRIPT_LINE_MAX_BYTES).then_some(SCRIPT_LINE_MAX_BYTES))
+/// Length in bytes of the first line with its line feed, or of a piece of a line that is too long; `None` if more may
+/// follow.
+fn line_len(received: &[u8]) -> Option<usize> {
+    let end = received.iter().take(SCRIPT_LINE_MAX_BYTES).position(|byte| *byte == b'\n');
+    end.map(|end| end + 1).or((received.len() >= SCRIPT_LINE_MAX_BYTES).then_some(SCRIPT_LINE_MAX_BYTES))
 }
 
 #[cfg(test)]

@@ -1,5 +1,4 @@
-//! How far `frixel finger calibrate` and `frixel finger fit` are from the truth, and how often the stated intervals
-//! contain it.
+//! Error of `frixel finger calibrate` and `frixel finger fit` against the truth, and coverage of the stated intervals.
 //!
 //! The truth is what a board that drives 150 V rms steadily adds to the friction of the same simulated person: measured
 //! in steady sliding, under the median load of the recording, without noise. The recordings are those of the command,
@@ -30,10 +29,10 @@ use super::recorded::Simulated;
 use super::{CalibrateArgs, run};
 use crate::commands::interrupt::Interrupt;
 
-/// People and seeds of the test of every change, and of the soak.
+/// Numbers of people and of seeds, in every test run and in the soak.
 const FEW: (u64, u64) = (8, 1);
 const MANY: (u64, u64) = (200, 20);
-/// Strokes of the recordings from which the error over the length of a recording is measured, and how many people.
+/// Lengths in strokes at which the error is measured over the length of a recording, and the number of people for each.
 const STROKES: [u64; 6] = [9, 12, 18, 36, 72, 144];
 const PEOPLE_PER_LENGTH: u64 = 24;
 /// Steady sliding: its length, and the part at the end that is measured, in seconds.
@@ -50,7 +49,7 @@ fn arguments(line: &str) -> CalibrateArgs {
     Line::parse_from(format!("calibrate {line}").split(' ')).args
 }
 
-/// What `frixel finger calibrate` with these arguments writes.
+/// The recording that `frixel finger calibrate` writes with these arguments.
 fn calibrated(line: &str) -> Vec<u8> {
     let (board, forces) = Simulated::new(&arguments(line)).unwrap().record(&Interrupt::default()).unwrap();
     let mut csv = Vec::new();
@@ -58,7 +57,7 @@ fn calibrated(line: &str) -> Vec<u8> {
     csv
 }
 
-/// What `frixel finger fit` makes of a recording.
+/// The fit that `frixel finger fit` makes of a recording.
 fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
     let settings = Settings {
         voltage_v_rms: 150.0,
@@ -72,7 +71,7 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
 
 /// What a board that drives 150 V rms adds to the friction of a person in steady sliding under a load, in newtons.
 fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
-    // What the scene's finger has at 150 V, a little less, so that rounding stays within reach.
+    // The friction of the scene's finger at 150 V, reduced so that rounding stays within reach.
     let target_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
     let scene = format!(
         "version = 1\ndrive = {{ voltage_max_v_rms = 150 }}\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
@@ -80,7 +79,7 @@ fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     );
     let scene = Scene::parse(&scene, "steady", &BTreeMap::new()).unwrap();
     let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap();
-    // The person's friction coefficient under this load, in the contact whose own load it is.
+    // The person's friction coefficient under this load, since the contact below has this load as its own.
     let gain = (load_n / person.normal_load_n).powf(person.fingertip.load_exponent);
     let finger = Finger { friction_coefficient: gain * person.finger.friction_coefficient, ..person.finger };
     let gap_m = person.skin_gap_m + Screen::example().coating_gap_m();
@@ -130,7 +129,7 @@ struct Outcome {
     covers: bool,
 }
 
-/// What became of the recordings of many people.
+/// Outcomes of the recordings of many people.
 #[derive(Debug, Default)]
 struct Tally {
     outcomes: Vec<Outcome>,
@@ -256,8 +255,8 @@ fn errors_fall_with_the_root_of_the_number_of_strokes() {
     assert!(long.median_half_width() < 0.4 * short.median_half_width());
 }
 
-/// Friction that is 3 % low, as it is with the rows in which the drive is switched off, is caught: of eight intervals
-/// of 1 % none would contain the truth.
+/// Friction that is 3 % low, as with the rows in which the drive is off, would be caught: none of eight intervals of
+/// 1 % would contain the truth.
 #[test]
 fn a_few_people_are_fitted_as_they_are() {
     let tally = Tally::of(0..FEW.0, 1..1 + FEW.1, "");

@@ -23,14 +23,14 @@ pub(super) fn copy(args: &CalibrateArgs) -> Result<OutputFile> {
     Ok(OutputFile::recording(path.as_ref(), "-o", &Inputs::new(&args.forces), true)?)
 }
 
-/// Standard input, which is read while the board plays, so that its writer does not block.
+/// Standard input, read while the board plays so that its writer does not block.
 pub(super) struct StandardInput {
     reader: JoinHandle<io::Result<()>>,
     bytes: Arc<Mutex<Vec<u8>>>,
 }
 
 impl StandardInput {
-    /// Reads, and writes a copy.
+    /// Starts to read, and to write a copy.
     pub(super) fn read(copy: Option<FileWriter>) -> Self {
         Self::read_from(Bounded::new(stdin(), input::CSV_MAX_BYTES), copy)
     }
@@ -48,7 +48,7 @@ impl StandardInput {
                     Err(error) => return Err(error),
                 };
                 let chunk = chunk.get(..count).unwrap_or_default();
-                // The copy serves only if this process does not reach the end.
+                // The copy is needed only if this process is cut off.
                 let _ = copy.as_mut().map(|copy| copy.write_all(chunk).and_then(|()| copy.flush()));
                 shared.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(chunk);
             }
@@ -56,8 +56,8 @@ impl StandardInput {
         Self { reader, bytes }
     }
 
-    /// What has come when the input ends, or when this time has passed: a sensor may go on measuring. An input that
-    /// goes on beyond the limit is an error, since its end would be missing.
+    /// Returns the bytes read until the input ends or `time_max` has passed: a sensor may go on measuring. Input beyond
+    /// the size limit is an error, since its end would be missing.
     pub(super) fn after(self, time_max: Duration) -> io::Result<Vec<u8>> {
         let begun = Instant::now();
         while !self.reader.is_finished() && begun.elapsed() < time_max {
@@ -71,7 +71,7 @@ impl StandardInput {
     }
 }
 
-/// The rows of a reading, after a note of how they were understood.
+/// Returns the rows of a reading, and prints a note on how they were interpreted.
 pub(super) fn understood(path: &Path, forces: Reading<Vec<ForceRow>>) -> Vec<ForceRow> {
     note_understood(path, forces.understood.as_deref());
     forces.value
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn forces_beyond_the_limit_are_not_cut_without_a_word() {
+    fn forces_beyond_the_limit_are_an_error() {
         let read = |len: usize| {
             let input = Bounded::new(io::repeat(b'7').take(len as u64), 10_000);
             StandardInput::read_from(input, None).after(Duration::from_mins(1))

@@ -1,4 +1,4 @@
-//! A calibration as a board plays it.
+//! A calibration, played on a board.
 
 use std::io::Write;
 use std::time::Duration;
@@ -47,7 +47,7 @@ impl Plan {
         Ok(Self { program: compile(&scene, limits, tick_hz)?, protocol, limits: *limits, tick_hz })
     }
 
-    /// Says what will be played.
+    /// Prints the plan.
     pub(super) fn say(&self, recording: &OutputFile) -> Result<()> {
         let words = self.protocol.words();
         words.lines().try_for_each(|line| say(recording, format_args!("  {:<16} {line}", "plan")))
@@ -64,7 +64,7 @@ impl Plan {
         Ok(player)
     }
 
-    /// Plays to the end, and returns what the board reported, which is written to `partial` in the meantime.
+    /// Plays to the end, and returns the board's reports. Also writes them to `partial` as they arrive.
     pub(super) fn play<L: RecordedLink>(
         &self,
         player: &mut Player<L>,
@@ -84,9 +84,9 @@ impl Plan {
                 bail!("the run was interrupted: start it again");
             }
             let stepped = player.step(left);
-            let seen = rows.len();
+            let written = rows.len();
             rows.extend(board_rows(player));
-            write_board(&mut *partial, rows.get(seen..))?;
+            write_board(&mut *partial, rows.get(written..))?;
             left = left.saturating_sub(stepped?);
             let stroke = (player.recorder_mut().t_s() / (self.protocol.stroke_s + self.protocol.pause_s)) as u64;
             bar.set_position((stroke + 1).min(self.protocol.strokes as u64));

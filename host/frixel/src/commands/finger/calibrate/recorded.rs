@@ -19,7 +19,7 @@ use crate::commands::profiles::screen;
 use crate::commands::waiting;
 use frixel_files::{FileWriter, OutputFile};
 
-/// Time after the run in which forces on standard input may still come, behind the sensor's own buffers.
+/// Time after the run for which late forces on standard input are awaited: the sensor may buffer them.
 const FORCES_LATE: Duration = Duration::from_millis(500);
 
 pub(super) type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
@@ -59,7 +59,7 @@ impl Simulated {
         let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
         let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
         let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;
-        // What is simulated needs no file until it is whole.
+        // A simulated recording is written when it is complete.
         let board = self.plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
         drop(player);
         Ok((board, sensor.take_rows()))
@@ -87,7 +87,7 @@ pub(super) fn on_port(
     let plan = Plan::new(args, &hello.limits, hello.tick_hz)?;
     plan.say(recording)?;
     let from_stdin = if forces == Path::new("-") {
-        // What goes to a stream has no copies.
+        // A recording that goes to a stream has no partial file, and needs no copy.
         let copy = if partial.is_some() { Some(forces::copy(args)?.record(CUT_OFF)?) } else { None };
         Some(forces::StandardInput::read(copy))
     } else {
