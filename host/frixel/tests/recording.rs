@@ -230,7 +230,9 @@ fn what_is_streamed_is_in_the_recording_and_streamed_again() {
             bytes[100] ^= 0x80;
             other.metadata.files = SourceFile::all([("stream".to_owned(), bytes.as_slice())]);
             write(folder.path(), "other.parquet", &other);
-            assert!(refused(folder.path(), "other.parquet").contains("other.parquet does not play the same bits: row "));
+            assert!(
+                refused(folder.path(), "other.parquet").contains("other.parquet does not play the same bits: row ")
+            );
             // Beyond 4 MiB.
             let hash = SourceFile::Hash { sha256: "00".to_owned(), bytes: 9_000_000 };
             other.metadata.files.insert("stream".to_owned(), hash);

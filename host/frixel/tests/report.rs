@@ -228,7 +228,7 @@ fn a_hard_a_soft_and_an_empirical_finger_are_reported() {
     for (finger, words) in [
         (finger("stiffness_pa_per_m = 1e13\n"), ["k = 1.000e13 Pa/m", "a board refuses it"]),
         (finger("stiffness_pa_per_m = 1e3\n"), ["k = 1.000e3 Pa/m", "the contact would have a radius"]),
-        (finger(soft), ["that of the scene, assumed: R = 8 mm", "Layers of "]),
+        (finger(soft), ["the scene's, assumed: R = 8 mm", "Layers of "]),
         (empirical.to_owned(), ["has no contact model: R = 8 mm", "120 V rms"]),
     ] {
         let page = &of_scene(&scene, Some(&finger))["index.html"];

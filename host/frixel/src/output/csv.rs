@@ -26,7 +26,7 @@ pub(crate) trait CsvRow {
 #[derive(Debug)]
 pub(crate) struct CsvFile<R> {
     writer: FileWriter,
-    /// Code of the participant, in a last column, if the rows are of a person.
+    /// Code of the participant, for a last column, if the rows are from a real board.
     participant: Option<String>,
     rows: PhantomData<R>,
 }
@@ -50,22 +50,22 @@ pub(crate) struct EventRow {
     pub event: BoardEvent,
     /// Time at which the board had received the last complete frame from a host, s.
     pub last_frame_t_s: f64,
-    /// Time that a virtual board dropped, s.
+    /// Time that a virtual board dropped in this event, s.
     pub dropped_s: Option<f64>,
 }
 
 impl<R: CsvRow> CsvFile<R> {
     /// Writes the header row into a file.
     pub(crate) fn new(writer: FileWriter) -> Result<Self> {
-        Self::begun(writer, None)
+        Self::start(writer, None)
     }
 
-    /// As [`Self::new`], for what a person did on a board: a column `participant` says so, also without a code.
+    /// As [`Self::new`], for a play on a real board, which the column `participant` marks even without a code.
     pub(crate) fn of_person(writer: FileWriter, code: Option<&str>) -> Result<Self> {
-        Self::begun(writer, Some(code.unwrap_or_default().to_owned()))
+        Self::start(writer, Some(code.unwrap_or_default().to_owned()))
     }
 
-    fn begun(writer: FileWriter, participant: Option<String>) -> Result<Self> {
+    fn start(writer: FileWriter, participant: Option<String>) -> Result<Self> {
         let mut csv = Self { writer, participant, rows: PhantomData };
         let last = csv.participant.as_ref().map_or("", |_| ",participant");
         csv.write_line(format_args!("{}{last}", R::HEADER))?;

@@ -1,5 +1,5 @@
-//! Numbers with a fixed number of decimals. A row of `felt.csv` has eight, and the standard library takes several times
-//! as long for the same digits, because it serves every number of digits.
+//! Numbers with a fixed number of decimals. A row of `felt.csv` has eight such numbers, and the standard library takes
+//! several times as long for the same digits, because it supports any number of digits.
 
 use std::fmt::{self, Display};
 
@@ -7,7 +7,7 @@ use std::fmt::{self, Display};
 const DECIMALS_MAX: u32 = 9;
 /// Bits of an `f64` behind its exponent.
 const FRACTION_BITS: u32 = 52;
-/// What the exponent field has when the significand, as an integer, is the value.
+/// The exponent field of values that equal their significand as an integer.
 const EXPONENT_OF_INTEGERS: u32 = 1075;
 /// Digits of the largest number, its point and its sign.
 const LENGTH_MAX: usize = 22;
@@ -46,8 +46,8 @@ impl Display for Decimals {
     }
 }
 
-/// `value * 10^decimals` for a value of zero or more, rounded to the nearest integer, and to the even one of two;
-/// `None` where the calculation does not hold the number.
+/// `value * 10^decimals` for a value of zero or more, rounded to the nearest integer, ties to even; `None` beyond the
+/// range of this calculation.
 fn scaled(value: f64, decimals: u32) -> Option<u64> {
     if value == 0.0 {
         return Some(0);

@@ -1,4 +1,4 @@
-//! The log of a virtual board: what its finger felt, by the board's own time.
+//! The log of a virtual board: what its finger felt, over the board's own time.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -19,17 +19,17 @@ pub(crate) struct FeltLogError {
     reason: String,
 }
 
-/// Bytes of a log that are read at once.
+/// Bytes per read of a log.
 const PIECE_LEN: usize = 1 << 20;
 
 /// The latest rows of a `felt.csv` that grows, in order of time.
 #[derive(Debug)]
 pub(crate) struct FeltLog {
     path: PathBuf,
-    /// The file, from the first reading on.
+    /// The file, once opened.
     input: Option<Bounded<File>>,
     header: Vec<u8>,
-    /// The end of the file, which is no whole row yet.
+    /// The last bytes read, which are not a whole row yet.
     rest: Vec<u8>,
     rows: VecDeque<LogRow>,
 }
@@ -55,8 +55,8 @@ impl FeltLog {
         &self.path
     }
 
-    /// Reads what was written since the last call, and forgets rows before a time since the power-on of the board, s.
-    /// A last row that is not complete waits for the next call.
+    /// Reads the rows written since the last call, and drops rows before `from_s`, in seconds since the power-on of the
+    /// board. An incomplete last row waits for the next call.
     pub(crate) fn read_on(&mut self, from_s: f64) -> Result<(), FeltLogError> {
         let error = |reason: String| FeltLogError { path: self.path.clone(), reason };
         let read = |source: io::Error| error(source.to_string());
@@ -90,8 +90,8 @@ impl FeltLog {
         self.rows.back().map_or(0.0, |row| row.t_s)
     }
 
-    /// Adds to a row of a client what the log has at the same time: the felt friction, and the true place and speed of
-    /// the finger. `start_s` is the time between the power-on of the board and the client's time zero.
+    /// Joins a client's row with the log's row at the same time: felt friction, and the true place and speed of the
+    /// finger. `start_s` is the time from the power-on of the board to the client's time zero.
     pub(crate) fn join(&self, row: &FeltRow, start_s: f64) -> FeltRow {
         let t_s = start_s + row.t_s;
         let after = self.rows.partition_point(|logged| logged.t_s < t_s);
@@ -111,7 +111,7 @@ impl FeltLog {
     }
 }
 
-/// Longest time between a client's row and the row of the log that belongs to it, s. The log has a row a millisecond.
+/// Longest time between a client's row and the log's row that belongs to it, s. The log has one row per millisecond.
 const APART_MAX_S: f64 = 1e-3;
 
 fn rows(bytes: &[u8]) -> Result<Vec<LogRow>, TableError> {

@@ -34,8 +34,8 @@ type Part = fn(&Span) -> Option<Extremes>;
 
 /// Draws reference and felt friction over time, and the voltage below them; the reachable range is shaded. Where the
 /// felt friction is unknown, as on a real board, the commanded friction is drawn instead. Signals that change too fast
-/// for a line are drawn as their envelope. The way of the finger, the layer under it, and the reasons for which the
-/// output is off stand below the time.
+/// for a line are drawn as their envelope. Strips below the time show the length of the finger's path, the layer under
+/// it, and why the output is off.
 pub(crate) fn draw_felt_svg(subject: &Subject, trace: &Trace, reach: &Reach) -> Result<String, DrawingError> {
     svg(&chart(subject, trace, reach))
 }
@@ -44,7 +44,7 @@ fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
     let spans = trace.spans();
     let (above, fast_friction) = friction(spans, reach);
     let (mut below, fast_voltage) = voltage(spans);
-    for strip in [way(spans, &below.x), layers(trace)].into_iter().flatten() {
+    for strip in [path_strip(spans, &below.x), layers(trace)].into_iter().flatten() {
         below.add_strip(strip);
     }
     off_strip::add_to(&mut below, spans);
@@ -56,7 +56,7 @@ fn chart(subject: &Subject, trace: &Trace, reach: &Reach) -> Chart {
     chart
 }
 
-/// The panel of the frictions, and whether one of them is drawn as an envelope.
+/// The panel of reference and felt friction, and whether either is drawn as an envelope.
 fn friction(spans: &[Span], reach: &Reach) -> (Panel, bool) {
     let felt = spans.iter().any(|span| span.felt_n.is_some());
     let (name, second): (_, Part) =
@@ -91,11 +91,11 @@ fn voltage(spans: &[Span]) -> (Panel, bool) {
     (panel, is_fast)
 }
 
-/// The length of the finger's way at the times that have a label; `None` without a finger.
-fn way(spans: &[Span], time: &Axis) -> Option<Strip> {
-    let total_mm = spans.last().map(|span| span.way_mm).filter(|way_mm| *way_mm > 0.0)?;
+/// The length of the finger's path at the labelled times; `None` without a finger.
+fn path_strip(spans: &[Span], time: &Axis) -> Option<Strip> {
+    let total_mm = spans.last().map(|span| span.path_mm).filter(|path_mm| *path_mm > 0.0)?;
     let decimals = usize::from(total_mm < 20.0);
-    let at = |t_s: f64| spans.iter().find(|span| span.end_s >= t_s).map_or(total_mm, |span| span.way_mm);
+    let at = |t_s: f64| spans.iter().find(|span| span.end_s >= t_s).map_or(total_mm, |span| span.path_mm);
     let cell = |t_s: f64| StripCell { x: t_s..t_s, text: format!("{:.decimals$}", at(t_s)), colour: None };
     Some(Strip { label: "path, mm".to_owned(), cells: time.ticks().into_iter().map(cell).collect() })
 }
@@ -121,7 +121,7 @@ fn layers(trace: &Trace) -> Option<Strip> {
     (!cells.is_empty()).then(|| Strip { label: "layer".to_owned(), cells })
 }
 
-/// An empty panel over time, whose upright axis extends a twentieth of the range beyond both ends.
+/// An empty panel over time, whose vertical axis extends a twentieth of the range beyond both ends.
 fn panel(label: &str, times: (f64, f64), (low, high): (f64, f64), height: u32) -> Panel {
     let margin = 0.05 * (high - low).max(1e-6);
     let x = Axis::linear("time, s", times.0..times.1).with_labels(12.0);
@@ -161,7 +161,7 @@ struct Signal {
     range: f64,
 }
 
-/// A short interval of time, with the course of the signal in it.
+/// A short interval of time, with the signal in it.
 #[derive(Default)]
 struct Slice {
     /// Points of the line.
@@ -198,7 +198,7 @@ impl Signal {
             match ((self.part)(span), stretches.last_mut()) {
                 (Some(Extremes { least, largest }), Some(stretch)) => {
                     let (least, largest) = (self.scale * least, self.scale * largest);
-                    // The extreme that is nearer to the end of the line comes first.
+                    // The extreme nearer to the end of the line comes first.
                     let last = stretch.last().map(|&(_, last): &(f64, f64)| last);
                     let falls = last.is_some_and(|last| (last - largest).abs() < (last - least).abs());
                     let (first, second) = if falls { (largest, least) } else { (least, largest) };
@@ -238,8 +238,8 @@ impl Signal {
     }
 }
 
-/// Joins consecutive slices that are drawn in the same way. Each run states whether it is drawn as an envelope, and has
-/// the points, beginning at the end of the run before.
+/// Joins consecutive slices that are drawn in the same way. Each run has whether it is drawn as an envelope, and its
+/// points, starting at the end of the previous run.
 fn runs(slices: &[Slice]) -> Vec<(bool, Vec<(f64, f64)>)> {
     let turns = |place: usize| -> usize {
         let near = slices.iter().skip(place.saturating_sub(2)).take(place + 3 - place.saturating_sub(2));
@@ -313,7 +313,7 @@ mod tests {
             commanded_n: None,
             felt_n: Some(Extremes { least, largest: least + 0.01 }),
             voltage_v_rms: None,
-            way_mm: 0.0,
+            path_mm: 0.0,
             layer: None,
             rows: 1,
             off_rows: 0,

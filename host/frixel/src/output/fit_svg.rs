@@ -7,8 +7,8 @@ use frixel_lab::fit::Fit;
 /// Number of points of a fitted curve.
 const CURVE_POINTS: u32 = 100;
 
-/// Draws what was measured beside the fit: electric friction over voltage with the fitted law and a square law, what is
-/// left over per stroke, and the friction coefficient per stroke.
+/// Draws the measurements beside the fit: electric friction over voltage with the fitted law and a square law, the
+/// residuals over time and over load, and the friction coefficient per stroke.
 pub(crate) fn draw_fit_svg(title: &str, fit: &Fit) -> Result<String, DrawingError> {
     svg(&chart(title, fit))
 }
@@ -17,9 +17,8 @@ fn chart(title: &str, fit: &Fit) -> Chart {
     let mut chart = Chart::new(vec![over_voltage(fit), residuals(fit), over_load(fit), coefficients(fit)], 2);
     title.clone_into(&mut chart.title);
     chart.caption = vec![
-        "Each mark is the mean of one stroke at one voltage, in comparison with the friction while the drive is off \
-         just before \
-         and after. Residuals that depend on voltage, load or time show what the model does not explain."
+        "Each mark is the mean of one stroke at one voltage, relative to the friction while the drive is off just \
+         before and after. Residuals that depend on voltage, load or time show what the model does not explain."
             .to_owned(),
     ];
     chart

@@ -17,8 +17,8 @@ const BLACK: RGBColor = RGBColor(0, 0, 0);
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 
 /// The friction that a program targets everywhere on the screen. The colours span the reachable range; targets beyond
-/// it have the colour of the nearer end, and are hatched. The caption is that of the [`FrictionMap`]. Series over it
-/// are in millimetres.
+/// it have the colour of the nearer end, and are hatched. The caption is that of the [`FrictionMap`]. Series drawn over
+/// the map are in millimetres.
 pub(super) fn chart(title: &str, program: &Program, preview: &Preview) -> Chart {
     let FrictionMap { grid, parts_of_reach, caption } = FrictionMap::new(program, preview);
     let diagonal = |pixel: usize| pixel % grid.width + pixel / grid.width;

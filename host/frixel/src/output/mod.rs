@@ -1,4 +1,4 @@
-//! What the output files of a play have in them.
+//! Contents of the output files.
 //!
 //! - `FeltCsv`, `ForcesCsv` and `EventCsv`: `felt.csv`, `forces.csv` and `events.csv`, row by row while the scene
 //!   plays.

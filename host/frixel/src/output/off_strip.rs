@@ -1,4 +1,4 @@
-//! The strip of `felt.svg` that says why the output is off while a finger is on the screen.
+//! The strip of `felt.svg` that shows why the output is off while a finger is on the screen.
 
 use super::span::{OFF_REASONS, Span};
 use frixel_chart::{Line, Look, PALETTE, Panel, Strip, StripCell};

@@ -22,7 +22,7 @@ pub(crate) struct Report {
     pub rig: String,
     /// Whether the scene is a draft, which a board refuses.
     pub draft: bool,
-    /// Why a board refuses it, a sentence each with line and column in the scene's file.
+    /// Reasons for which a board refuses the scene: one sentence each, with line and column in the scene's file.
     pub board_refuses: Vec<String>,
     /// Whether finger or board is simulated.
     pub simulated: bool,
@@ -30,11 +30,11 @@ pub(crate) struct Report {
     pub world: Option<Effects>,
     /// The simulated touch source.
     pub touch_source: Option<TouchSource>,
-    /// Seed of the simulated person whose finger the board does not know.
+    /// Seed of the simulated person, if the finger is not the scene's.
     pub finger_seed: Option<u64>,
     /// Number of ticks played.
     pub ticks: u64,
-    /// Ticks with the finger on the screen before the board knew of it, which have no friction error.
+    /// Ticks with the finger on the screen before the first touch report, which have no friction error.
     pub unreported_ticks: u64,
     /// Felt minus reference friction, averaged over a carrier period: root mean square, N.
     pub friction_error_rms_n: Option<f64>,
@@ -52,13 +52,13 @@ pub(crate) struct Report {
     pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// What the newtons rest on: `assumed`, `perceptual` or `measured`.
+    /// Origin of the finger's numbers: `assumed`, `perceptual` or `measured`.
     pub finger_origin: &'static str,
     /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,
     /// Total friction at the largest voltage, N.
     pub reachable_max_n: f64,
-    /// Smallest total reference friction, but for the micrometres after the finger lands or turns, N.
+    /// Smallest total reference friction, except in the micrometres after the finger lands or turns, N.
     pub reference_min_n: Option<f64>,
     /// Largest total reference friction, with the same exception, N.
     pub reference_max_n: Option<f64>,
@@ -76,32 +76,32 @@ pub(crate) struct Report {
     pub realtime_factor: Option<f64>,
     /// Number of streamed samples; this and the two fields below are `null` without a stream.
     pub stream_samples: Option<u64>,
-    /// How often the board ran out of samples.
+    /// Number of times that the board ran out of samples.
     pub stream_underruns: Option<u32>,
     /// Runs of samples that were lost on the line.
     pub stream_gaps: Option<u32>,
-    /// What the finger felt of each layer on which it slid in the first minute of this play while the board drove;
-    /// `null` if something changed the scene while it played, and on a board at a port.
+    /// Verdict on each layer on which the finger slid in the first minute of this play while the board drove; `null` if
+    /// the scene changed while it played, and on a board at a port.
     pub in_this_play: Option<Vec<LayerVerdict>>,
-    /// Why there are no verdicts.
+    /// Reason for which there are no verdicts.
     #[serde(skip)]
     pub no_verdict: Option<&'static str>,
-    /// Which layers start off, and what switches them on, if some do.
+    /// The layers that start off, if any, and what switches them on.
     #[serde(skip)]
     pub starts_off: Option<String>,
-    /// Whether the play went on after what was judged.
+    /// Whether the play lasted longer than its judged part.
     #[serde(skip)]
     pub is_judged_in_part: bool,
     /// The layers of the last scene that the finger never touched.
     pub untouched_layers: Vec<LayerTitle>,
-    /// When that scene replaced the one before, s; `null` if the first scene played to the end.
+    /// Time at which that scene replaced the previous one, s; `null` if the first scene played to the end.
     pub replaced_at_s: Option<f64>,
     /// SHA-256 of each other file of the play, by its name; only in `summary.json`.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub files: BTreeMap<String, String>,
 }
 
-/// Whether a file of a play is another one than the summary beside it was written with.
+/// Whether a file of a play does not match its hash in the summary beside it.
 pub(crate) fn is_of_interrupted_play(file: &Path, bytes: &[u8]) -> bool {
     let summary = input::read(&file.with_file_name("summary.json"), input::TOML_MAX_BYTES).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap_or_default();
@@ -109,10 +109,10 @@ pub(crate) fn is_of_interrupted_play(file: &Path, bytes: &[u8]) -> bool {
     summary["files"][&*name].as_str().is_some_and(|hash| hash != sha256(bytes))
 }
 
-/// The world that was simulated beside a board.
+/// The world that was simulated around a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WorldReport {
-    /// Which effects it had beside the contact model.
+    /// Its effects beyond the contact model.
     pub effects: Effects,
     /// The touch source.
     pub touch_source: TouchSource,
@@ -120,18 +120,18 @@ pub(crate) struct WorldReport {
     pub finger_seed: Option<u64>,
 }
 
-/// Effects of the simulated world beside the contact model.
+/// Effects of the simulated world beyond the contact model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effects {
     None,
-    /// All but charge that leaks through the skin, about which measurements disagree.
+    /// All but leakage of charge through the skin, on which measurements disagree.
     AllButLeakage,
     All,
 }
 
 impl Effects {
-    /// The name of the world, for programs, and what is in it.
-    pub(super) const fn words(self) -> (&'static str, &'static str) {
+    /// The name of the world, for programs, and its description.
+    pub(super) const fn description(self) -> (&'static str, &'static str) {
         match self {
             Self::None => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
             Self::AllButLeakage => (
@@ -148,7 +148,7 @@ impl Effects {
 
 impl Serialize for Effects {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.words().0)
+        serializer.serialize_str(self.description().0)
     }
 }
 
@@ -203,20 +203,20 @@ impl Report {
         }
     }
 
-    /// Says what the newtons rest on; without this, they are assumed.
+    /// Sets the origin of the finger's numbers, by default assumed.
     #[must_use]
     pub(crate) fn with_origin(self, origin: Origin) -> Self {
         Self { finger_origin: origin.word(), ..self }
     }
 
-    /// Says whether finger or board is simulated; without this, they are.
+    /// Sets whether finger or board is simulated, by default true.
     #[must_use]
     pub(crate) fn with_simulated(self, simulated: bool) -> Self {
         Self { simulated, ..self }
     }
 
-    /// Says which world was simulated, if one was. The newtons of a random person are assumed, whatever those of the
-    /// scene's finger rest on.
+    /// Sets the simulated world, if there is one. The numbers of a random person are assumed, whatever the origin of
+    /// the scene's finger.
     #[must_use]
     pub(crate) fn with_world(self, world: Option<WorldReport>) -> Self {
         let finger_seed = world.and_then(|world| world.finger_seed);
@@ -225,7 +225,7 @@ impl Report {
         Self { world: world.map(|world| world.effects), touch_source, finger_seed, finger_origin, ..self }
     }
 
-    /// Says why a board refuses the scene. If there is a reason, it is a draft.
+    /// Sets the reasons for which a board refuses the scene. With a reason, the scene is a draft.
     #[must_use]
     pub(crate) fn with_refusals(self, board_refuses: Vec<String>) -> Self {
         Self { draft: !board_refuses.is_empty(), board_refuses, ..self }
@@ -240,20 +240,20 @@ impl Report {
         self
     }
 
-    /// Adds what the finger felt of each layer, if the play was judged, which lasted for so many seconds.
+    /// Adds the verdict on each layer, if the play was judged. The play lasted for `seconds`.
     #[must_use]
     pub(crate) fn with_verdicts(self, in_this_play: Option<Vec<LayerVerdict>>, seconds: f64) -> Self {
         Self { in_this_play, is_judged_in_part: seconds > JUDGED_MAX_S, ..self }
     }
 
-    /// Adds why there are no verdicts, and which layers started off.
+    /// Adds the reason for which there are no verdicts, and the layers that started off.
     #[must_use]
     pub(crate) fn with_notes(self, no_verdict: Option<&'static str>, starts_off: Option<String>) -> Self {
         Self { no_verdict, starts_off, ..self }
     }
 
-    /// Adds the names of the layers of the last scene that the finger never touched, and when that scene replaced
-    /// another one, if it did.
+    /// Adds the layers of the last scene that the finger never touched, and the time at which that scene replaced
+    /// another, if it did.
     #[must_use]
     pub(crate) fn with_untouched(self, untouched_layers: Vec<LayerTitle>, replaced_at_s: Option<f64>) -> Self {
         Self { untouched_layers, replaced_at_s, ..self }

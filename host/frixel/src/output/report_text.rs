@@ -9,8 +9,8 @@ use frixel_scene::{LayerTitle, Origin, fold_copies};
 use super::report::{Effects, Report};
 
 impl Report {
-    /// The report as lines of text, each ending in a line feed: what the finger felt, and how far that was from the
-    /// reference. With `verbose`, everything else comes first.
+    /// The report as lines of text, each ending in a line feed: what the finger felt, and the friction error. With
+    /// `verbose`, everything else comes first.
     pub(crate) fn summary(&self, verbose: bool) -> String {
         let mut lines = Vec::new();
         lines.extend(self.draft.then(|| ("draft", draft_line(self.board_refuses.len()))));
@@ -26,7 +26,7 @@ impl Report {
         feel::text(&lines)
     }
 
-    /// The friction error for a person: a part of what the drive can add.
+    /// The friction error in percent of what the drive can add.
     fn error_in_percent(&self, error: Option<ErrorSize>) -> Option<Line> {
         let percent = self.percent_of_range(error?.rms_n);
         let decimals = usize::from(percent < 10.0);
@@ -39,8 +39,8 @@ impl Report {
 
     fn world_lines(&self) -> Vec<Line> {
         let world = self.world.map(|world| {
-            let (name, what) = world.words();
-            ("world", format!("{name}: {what}"))
+            let (name, description) = world.description();
+            ("world", format!("{name}: {description}"))
         });
         let source = self.touch_source.map(|source| ("touch source", source.to_string()));
         let finger = self.finger_seed.map(|seed| {
@@ -120,7 +120,7 @@ impl Report {
         self.stream_underruns.is_some_and(|count| count > 0) || self.stream_gaps.is_some_and(|count| count > 0)
     }
 
-    /// The verdict on each layer, or the reason why there is none.
+    /// The verdict on each layer, or the reason for which there is none.
     fn felt_lines(&self) -> Vec<Line> {
         let verdicts = self.in_this_play.as_deref();
         let no_verdict = match verdicts {

@@ -8,7 +8,8 @@ use frixel_chart::{Axis, Chart, Line, Look, Mark, PALETTE, Panel};
 /// Least height of the row of a layer, in pixels.
 const ROW_HEIGHT: u32 = 30;
 
-/// Draws a picture of the numbers that a person notices, each over the value from which it is noticed.
+/// Draws the metrics that have a threshold of perception, each over its threshold, and the share of simulated fingers
+/// that notice each layer.
 pub(crate) fn draw_score_svg(title: &str, score: &Score) -> Result<String, DrawingError> {
     let noticed: Vec<(&MetricScore, Human)> =
         score.metrics.iter().filter_map(|metric| metric.human.map(|human| (metric, human))).collect();

@@ -1,12 +1,12 @@
-//! What a picture shows of consecutive rows of a play.
+//! Spans of consecutive rows of a play, for pictures.
 
 use frixel_felt::recorder::FeltRow;
 use frixel_wire::fault::Flags;
 
 /// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
 const OFF_BELOW_V_RMS: f64 = 1.0;
-/// A span counts as off if the output is off in this part of its rows. In a long play, the moments at which the finger
-/// turns are less. A pause of a tenth of a second is not, in a play of up to ten minutes.
+/// Part of a span's rows from which on the span counts as off. In a long play, the moments at which the finger turns
+/// are a smaller part; in a play of up to ten minutes, a pause of a tenth of a second is a larger one.
 const OFF_PART_MIN: f64 = 0.1;
 
 /// The flags that switch the output off, the strongest reason first, and what they mean on a screen with a finger.
@@ -18,7 +18,7 @@ pub(super) const OFF_REASONS: [(Flags, &str); 5] = [
     (Flags::STREAM_DRY, "the stream has no samples"),
 ];
 
-/// A layer that [`Trace::layer`](super::trace::Trace::layer) knows.
+/// A layer registered by [`Trace::layer`](super::trace::Trace::layer).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TracedLayer {
     /// Index of its title.
@@ -35,13 +35,13 @@ pub(super) struct Span {
     pub(super) commanded_n: Option<Extremes>,
     pub(super) felt_n: Option<Extremes>,
     pub(super) voltage_v_rms: Option<Extremes>,
-    /// Length of the finger's way at the end of the span, mm.
-    pub(super) way_mm: f64,
+    /// Length of the finger's path at the end of the span, mm.
+    pub(super) path_mm: f64,
     /// The topmost layer under the finger at the end of the span.
     pub(super) layer: Option<TracedLayer>,
     pub(super) rows: u32,
     pub(super) off_rows: u32,
-    /// The strongest reason for which the output is off at one of these rows, an index for [`OFF_REASONS`].
+    /// The strongest reason for which the output is off in one of these rows, an index into [`OFF_REASONS`].
     pub(super) off_reason: Option<usize>,
 }
 
@@ -71,10 +71,10 @@ impl Extremes {
 }
 
 impl Span {
-    pub(super) fn of(row: &FeltRow, way_mm: f64, layer: Option<TracedLayer>) -> Self {
+    pub(super) fn of(row: &FeltRow, path_mm: f64, layer: Option<TracedLayer>) -> Self {
         let off_reason = off_reason(row);
         Self {
-            way_mm,
+            path_mm,
             layer,
             rows: 1,
             off_rows: u32::from(off_reason.is_some()),
@@ -95,7 +95,7 @@ impl Span {
             reference_n: Extremes::join(self.reference_n, later.reference_n),
             commanded_n: Extremes::join(self.commanded_n, later.commanded_n),
             felt_n: Extremes::join(self.felt_n, later.felt_n),
-            way_mm: later.way_mm,
+            path_mm: later.path_mm,
             layer: later.layer,
             rows: self.rows + later.rows,
             off_rows: self.off_rows + later.off_rows,
@@ -104,14 +104,14 @@ impl Span {
         }
     }
 
-    /// Why the output is off; `None` if it is on for nearly all of the span.
+    /// The reason for which the output is off; `None` if it is on for nearly all of the span.
     pub(super) fn off(&self) -> Option<usize> {
         self.off_reason.filter(|_| f64::from(self.off_rows) >= OFF_PART_MIN * f64::from(self.rows))
     }
 }
 
-/// Why the output is off at a row, as an index for [`OFF_REASONS`]; `None` where it is on, where there is no finger,
-/// and where the scene has no friction.
+/// The reason for which the output is off in a row, an index into [`OFF_REASONS`]; `None` if it is on, if there is no
+/// finger, and if the scene has no friction there.
 fn off_reason(row: &FeltRow) -> Option<usize> {
     let is_off = row.x_mm.is_some() && row.voltage_v_rms.is_some_and(|voltage_v_rms| voltage_v_rms < OFF_BELOW_V_RMS);
     let flags = row.flags.filter(|_| is_off)?;

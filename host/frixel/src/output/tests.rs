@@ -26,7 +26,7 @@ fn brick() -> Program {
     compile(&scene_file::load(path).expect("it reads"), &LIMITS, 40_000).expect("it compiles")
 }
 
-/// Rows of a stroke along a slanted line, every millisecond; what is felt lags behind a little.
+/// Rows of a stroke along a slanted line, every millisecond; felt friction lags slightly.
 fn stroke(program: &Program, seconds: f64) -> Vec<FeltRow> {
     let reference = Reference::new(program);
     let rows = (seconds * 1e3) as usize;
@@ -194,18 +194,18 @@ fn felt_svg_has_axes_units_and_legend() {
     assert!(svg.starts_with("<svg width=\"1000\" height="));
     assert!(!svg.contains("envelope"));
     assert_eq!(svg, draw(&rows));
-    // A board that cannot tell what was felt.
+    // A board that does not report felt friction.
     for row in &mut rows {
         row.felt_n = None;
     }
     let svg = draw(&rows);
     assert!(svg.lines().any(|line| line == "commanded") && !svg.lines().any(|line| line == "felt"));
-    // Nothing at all is an empty picture, not an error.
+    // No rows give an empty picture, not an error.
     draw(&[]);
     draw(&rows[..1]);
 }
 
-/// The colour of a part of the scale, as a pixel has it.
+/// The colour at a part of the scale, as a pixel.
 fn part_colour(part: f64) -> [u8; 3] {
     let RGBColor(red, green, blue) = colour(part);
     [red, green, blue]
@@ -332,8 +332,8 @@ fn a_voltage_that_is_off_has_its_reason() {
     }
 }
 
-/// Ten minutes to and fro, a row each hundredth of a second: the finger stands still for one row a second, and the host
-/// is silent for a tenth of a second.
+/// Ten minutes back and forth, one row per hundredth of a second: the finger stands still for one row a second, and the
+/// host is silent for a tenth of a second.
 #[test]
 fn a_moment_at_each_turn_does_not_fill_the_strip_of_a_long_play() {
     let mut trace = Trace::new();
@@ -358,7 +358,7 @@ fn a_moment_at_each_turn_does_not_fill_the_strip_of_a_long_play() {
     );
 }
 
-/// Rows that become one span: the strongest reason is that of the strip, whichever comes first.
+/// Rows that become one span: the strip has their strongest reason, whichever comes first.
 #[test]
 fn the_strongest_reason_of_a_span_is_shown() {
     let program = brick();

@@ -16,7 +16,7 @@ const PLACE_STEP_MM: f64 = 0.2;
 /// Largest number of speeds that are stored for the median.
 const SPEEDS_MAX: usize = 8_192;
 
-/// Friction, voltage and stroke of a run. Long runs are reduced to least and largest value of each span of time.
+/// Friction, voltage and stroke of a run. Long runs are reduced to the least and largest value of each span of time.
 #[derive(Clone, Debug)]
 pub(crate) struct Trace {
     spans: Vec<Span>,
@@ -25,8 +25,8 @@ pub(crate) struct Trace {
     stroke: Vec<Option<(f64, f64)>>,
     place_step_mm: f64,
     speeds: Speeds,
-    /// Length of the finger's way so far, mm, and its last place.
-    way_mm: f64,
+    /// Length of the finger's path so far, mm, and its last place.
+    path_mm: f64,
     last_place_mm: Option<(f64, f64)>,
     layers: Vec<LayerTitle>,
 }
@@ -78,13 +78,13 @@ impl Trace {
             stroke: Vec::new(),
             place_step_mm: PLACE_STEP_MM,
             speeds: Speeds { mm_s: Vec::new(), rows_per_speed: 1, rows: 0 },
-            way_mm: 0.0,
+            path_mm: 0.0,
             last_place_mm: None,
             layers: Vec::new(),
         }
     }
 
-    /// A layer for [`Self::push`]. Where a scene replaces another, layers with the same number and name are one.
+    /// Registers a layer for [`Self::push`]. Layers of successive scenes with the same number and name are one layer.
     pub(crate) fn layer(&mut self, layer: &LayerTitle, is_off: bool) -> TracedLayer {
         let known = self.layers.iter().position(|known| known == layer);
         let index = known.unwrap_or_else(|| {
@@ -99,10 +99,10 @@ impl Trace {
         let place_mm = row.x_mm.zip(row.y_mm);
         if let (Some(from), Some(to)) = (self.last_place_mm, place_mm) {
             let step_mm = (to.0 - from.0).hypot(to.1 - from.1);
-            self.way_mm += if step_mm.is_finite() { step_mm } else { 0.0 };
+            self.path_mm += if step_mm.is_finite() { step_mm } else { 0.0 };
         }
         self.last_place_mm = place_mm;
-        self.push_span(Span::of(row, self.way_mm, layer));
+        self.push_span(Span::of(row, self.path_mm, layer));
         if let Some(speed_mm_s) = row.speed_mm_s.filter(|speed_mm_s| *speed_mm_s >= 1e3 * SLIDE_MIN_M_PER_S) {
             self.speeds.push(speed_mm_s);
         }

@@ -15,7 +15,7 @@ const COMMITTED: &str = include_str!("bench.json");
 /// `CORE.WHAT_cycles` an estimate in cycles.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// The day of the source that was counted; empty in a file that does not say.
+    /// Date of the source that was counted; empty if the file does not state it.
     date: String,
     counts: BTreeMap<String, f64>,
 }
@@ -40,13 +40,13 @@ impl Counts {
         Ok(Self { date, counts: counts.collect::<Result<_, Error>>()? })
     }
 
-    /// How and when the counts were made.
+    /// Origin of the counts, for the page: tool and date.
     pub(super) fn origin(&self) -> String {
-        let of = if self.date.is_empty() { String::new() } else { format!(", source of {}", self.date) };
-        format!("counted by cargo xtask bench in an emulator{of}")
+        let date = if self.date.is_empty() { String::new() } else { format!(", source of {}", self.date) };
+        format!("counted by cargo xtask bench in an emulator{date}")
     }
 
-    /// A number by its whole name.
+    /// The count of this name.
     pub(super) fn get(&self, name: &str) -> Option<f64> {
         self.counts.get(name).copied()
     }

@@ -1,5 +1,5 @@
-//! The finger whose run times are measured: that of the scene on its screen, or the example finger where that of the
-//! scene has no contact model.
+//! The finger whose run times are measured: the scene's finger on its screen, or the example finger if the scene's has
+//! no contact model.
 
 use frixel_model::{Contact, Finger, ParameterError, Real};
 use frixel_scene::{Elasticity, FingerProfile, Screen};
@@ -13,12 +13,13 @@ pub(super) struct DrawnFinger {
     pub(super) gap_m: f64,
     /// Normal load, in newtons.
     pub(super) load_n: f64,
-    /// Its numbers, and if it is not that of the scene, why.
+    /// Its parameters, and the reason if it is not the scene's finger.
     pub(super) words: String,
 }
 
 impl DrawnFinger {
-    /// A soft finger is on the springs that it has at its load and the scene's highest voltage.
+    /// The finger of a report's scene. A soft finger has the Winkler-Fuss stiffness of its load and the scene's highest
+    /// voltage.
     pub(super) fn of(subject: &Subject) -> Self {
         let (profile, screen) = (subject.scene.finger(), subject.scene.screen());
         let stiffness_pa_per_m = match (&profile.elasticity, &subject.program) {
@@ -27,12 +28,12 @@ impl DrawnFinger {
             _ => {
                 let stiffness_pa_per_m = Finger::<f64>::EXAMPLE.stiffness_pa_per_m;
                 let example = Self::new(&FingerProfile::example(), &Screen::example(), stiffness_pa_per_m);
-                let words = format!("the example finger, as that of the scene has no contact model: {}", example.words);
+                let words = format!("the example finger, since the scene's has no contact model: {}", example.words);
                 return Self { words, ..example };
             }
         };
         let drawn = Self::new(profile, screen, stiffness_pa_per_m);
-        Self { words: format!("that of the scene, {}: {}", profile.evidence.origin().word(), drawn.words), ..drawn }
+        Self { words: format!("the scene's, {}: {}", profile.evidence.origin().word(), drawn.words), ..drawn }
     }
 
     fn new(profile: &FingerProfile, screen: &Screen, stiffness_pa_per_m: f64) -> Self {
@@ -46,7 +47,7 @@ impl DrawnFinger {
         Self { finger, gap_m: 1e-6 * gap_um, load_n, words }
     }
 
-    /// The contact of a finger like this one of another stiffness, in either precision.
+    /// The contact of this finger with another stiffness, in either precision.
     pub(super) fn contact<T: Real>(&self, stiffness_pa_per_m: f64) -> Result<Contact<T>, ParameterError> {
         let Finger { radius_m, friction_coefficient, .. } = self.finger;
         let finger = Finger {

@@ -10,16 +10,16 @@ use super::timing::{Sample, seconds_per_call};
 
 /// Voltages over which errors are evaluated, in volts rms.
 pub(super) const RANGE_V_RMS: (f64, f64) = (1.0, 200.0);
-/// Frictions at which an error is evaluated.
+/// Number of frictions at which an error is evaluated.
 const ERROR_POINTS: usize = 4_000;
-/// Frictions over which a run time is measured, and the step between two of them, so that the processor cannot predict
-/// the next one. It has no common factor with their number.
+/// Number of frictions over which a run time is measured, and the step between consecutive ones, coprime to that
+/// number: the processor cannot predict the next.
 const TIMED_POINTS: usize = 1_024;
 const STRIDE: usize = 389;
 
 const BISECTION_STEPS: [usize; 3] = [12, 24, 53];
 const ENTRIES: [usize; 3] = [64, 1024, 4096];
-/// Errors that direct tables are built for.
+/// Error bounds for which direct tables are built.
 const TARGETS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 pub(super) const BOARD: &str = "the board's table, cubic, f32";
@@ -31,15 +31,15 @@ pub(super) const FORWARD: &str = "forward table, binary search, f32";
 pub(super) const CUBIC: &str = "direct table, cubic, f32";
 pub(super) const INTEGERS: &str = "direct table, cubic, integers";
 
-/// A way to compute the voltage, in one size.
+/// A method to compute the voltage, in one size.
 #[derive(Clone, Debug)]
 pub(super) struct Method {
     pub(super) name: &'static str,
-    /// Steps, entries, or the error that it is built for.
+    /// Steps, entries, or the error bound of the table.
     pub(super) size: String,
     /// Largest relative error in electric friction; infinite where there is no answer.
     pub(super) error: f64,
-    /// Where the error is that large.
+    /// Place of the largest error.
     pub(super) worst: String,
     /// Measured seconds per call in a chain of dependent calls; not a number if they were not measured.
     pub(super) seconds: f64,
@@ -80,7 +80,7 @@ impl Bench<'_> {
         methods
     }
 
-    /// The textbook's table: friction at even steps of voltage, a binary search, and a line between two entries.
+    /// The textbook's table: friction at even steps of voltage, binary search, and linear interpolation.
     fn forward_table(&self, entries: usize) -> Method {
         let step = RANGE_V_RMS.1 / (entries - 1) as f64;
         let frictions_n: Vec<f32> =
@@ -128,7 +128,7 @@ impl Bench<'_> {
         self.method(name, size, (|x| x as f32, f64::from, f64::from), invert)
     }
 
-    /// Measures a method in its own numbers: how friction becomes one, and what friction and what voltage one is.
+    /// Measures a method in its own number type. The closures convert a friction to it, and it to friction and voltage.
     fn method<T: Sample>(
         &self,
         name: &'static str,
@@ -140,7 +140,7 @@ impl Bench<'_> {
         for x in self.frictions(ERROR_POINTS) {
             let x = taken(x);
             let error = (self.double.electric_friction_n(volts(invert(x))) / friction_n(x) - 1.0).abs();
-            // No comparison finds what is not a number.
+            // Comparisons with NaN are false.
             let error = if error.is_nan() { f64::INFINITY } else { error };
             if error > method.error {
                 let [_, k, .., load_n] = self.parameters;
@@ -167,12 +167,12 @@ impl Bench<'_> {
     }
 }
 
-/// A method without an answer.
+/// A method that gives no answer.
 fn none(name: &'static str, size: &str) -> Method {
     Method { name, size: size.to_owned(), error: f64::INFINITY, worst: String::new(), seconds: f64::NAN }
 }
 
-/// Total friction in the form of the paper's Eqs. (43), (21), which bisection halves voltages on.
+/// Total friction by the paper's Eqs. (43), (21), inverted by bisection over voltage.
 #[derive(Clone, Copy)]
 struct Equation<T> {
     parameters: [T; 5],

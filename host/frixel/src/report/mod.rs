@@ -1,5 +1,6 @@
 //! `frixel report`: three questions on the first screen of a page, each with a small table and its plot. What is the
-//! error against the run time? How stable is the model in stiff and extreme cases? What does a scene leave out?
+//! error against the run time? How stable is the model in stiff and extreme cases? Which of the board's resources does
+//! a scene not use?
 //!
 //! [`write()`] creates a folder with a self-contained `index.html` and the numbers behind each plot as CSV.
 
@@ -27,18 +28,18 @@ use page::Page;
 /// The scene that a report is about.
 #[derive(Debug)]
 pub(crate) struct Subject<'s> {
-    /// Name of the scene, for a person.
+    /// Name of the scene, for display.
     pub name: &'s str,
     /// The scene.
     pub scene: &'s Scene,
-    /// The scene, compiled as a draft for the simulated board, or why it cannot be.
+    /// The scene, compiled as a draft for the simulated board.
     pub program: Result<Program, CompileError>,
 }
 
 /// Writes the report into a folder, creating it if necessary, and returns the paths of the files.
 ///
-/// `bench` is a file of counts written by `cargo xtask bench`, in place of those of this version. `inputs` are the
-/// files that were read. The run times are measured anew; everything else is equal in every run.
+/// `bench` is a file of counts written by `cargo xtask bench`, in place of this version's counts. `inputs` are the
+/// files that were read. Run times are measured; everything else is equal in every run.
 pub(crate) fn write(
     folder: &Path,
     subject: &Subject,

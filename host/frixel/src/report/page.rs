@@ -1,4 +1,4 @@
-//! `index.html`: three questions side by side, each with its plot and its table, and what they mean below.
+//! `index.html`: three questions side by side, each with its plot and its table, and explanations below.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,7 @@ impl Section {
 pub(super) struct Page<'p> {
     /// The finger whose run times were measured, in words.
     pub(super) finger: &'p str,
-    /// Where the counts come from.
+    /// Origin of the counts.
     pub(super) counts: &'p str,
     pub(super) sections: &'p [Section],
 }
@@ -128,12 +128,12 @@ pub(super) fn cell(number: f64) -> String {
     }
 }
 
-/// An error for a person.
+/// An error with two significant digits, for display.
 pub(super) fn digits(error: f64) -> String {
     if error.is_finite() { format!("{error:.1e}") } else { "no answer".to_owned() }
 }
 
-/// Cells between bars.
+/// The cells of a text, separated by `|`.
 pub(super) fn row(cells: &str) -> Vec<String> {
     cells.split('|').map(str::to_owned).collect()
 }

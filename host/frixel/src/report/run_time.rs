@@ -1,4 +1,4 @@
-//! Error against run time, for every way to compute the voltage.
+//! Error against run time, for every method to compute the voltage.
 
 use frixel_chart::{Axis, Line, Look, Mark, PALETTE, Panel, RGBColor};
 
@@ -10,14 +10,14 @@ use super::methods::{
 };
 use super::page::{Section, cell, digits, row};
 
-/// A soft finger and a hard one, Pa/m, beside the finger that is drawn.
+/// Stiffnesses in addition to that of the drawn finger: a soft and a hard finger, Pa/m.
 const STIFFNESSES_PA_PER_M: [f64; 2] = [1e6, 1e13];
 const LOADS_N: [f64; 3] = [0.0, 0.5, 2.0];
 /// Range of the axis of errors.
 const ERRORS: (f64, f64) = (1e-16, 1e1);
 
-/// The ways: their look, and the size that the table shows with its name in the counts.
-const WAYS: [(&str, Look, &str, Option<&str>); 8] = [
+/// The methods with their look, the size that the table shows, and its name in the counts.
+const METHODS: [(&str, Look, &str, Option<&str>); 8] = [
     (BOARD, Look::mark(PALETTE[2], Mark::Ring), "", Some("inverse_table")),
     (CUBIC, both(PALETTE[2], Mark::Diamond), "for 1e-5", None),
     (INTEGERS, both(PALETTE[0], Mark::Square), "for 1e-5", Some("inverse_table_fixed")),
@@ -66,8 +66,8 @@ pub(super) fn section(drawn: &DrawnFinger, counts: &Counts) -> Result<Section, R
         Axis::log("MEASURED run time / closed form in f64", 0.05..200.0),
         Axis::log("largest relative error in electric friction", ERRORS.0..ERRORS.1),
     );
-    let mut table = vec![row("way|largest error|MEASURED ns|Cortex-M4F: instructions, cycles (est.)")];
-    for (name, look, size, counted) in WAYS {
+    let mut table = vec![row("method|largest error|MEASURED ns|Cortex-M4F: instructions, cycles (est.)")];
+    for (name, look, size, counted) in METHODS {
         let points = methods.iter().filter(|method| method.name == name);
         let points = points.map(|method| (method.seconds / unit_s, method.error.clamp(ERRORS.0, ERRORS.1)));
         panel.add(name, look, points.collect());
@@ -90,11 +90,11 @@ pub(super) fn section(drawn: &DrawnFinger, counts: &Counts) -> Result<Section, R
         format!(
             "Down and to the left is better. The error is the largest of |x(V) − x|/x over electric frictions x from \
              x({} V) to x({} V), where V is the voltage that a method gives for x, and x(V) is the model's friction at \
-             that voltage in f64. It is the largest over loads of 0, 0.5 and 2 N and that of the finger, and over a soft, a hard \
-             and the finger's own stiffness: 10⁶ and 10¹³ Pa/m beside {:.1e}. Points of one colour differ in size.",
+             that voltage in f64. It is the largest over loads of 0, 0.5 and 2 N and the finger's own, and over stiffnesses \
+             of 10⁶, 10¹³ and the finger's own {:.1e} Pa/m. Points of one colour differ in size.",
             RANGE_V_RMS.0, RANGE_V_RMS.1, drawn.finger.stiffness_pa_per_m
         ),
-        "Run times are MEASURED on this computer, in one run: each call waits for the answer of the one before. They \
+        "Run times are MEASURED on this computer, in one run: each call waits for the result of the previous one. They \
          differ from run to run; all else on this page does not. Cycles are estimated from classes of instructions."
             .to_owned(),
         "Bisection is on Eqs. (43), (21), whose total friction cannot resolve the electric part in f32 under a load. The \

@@ -1,4 +1,4 @@
-//! Resources of the board that a scene uses, and those that it leaves out.
+//! The board's resources: the part that a scene uses, and the part that it leaves out.
 
 use frixel_chart::{Axis, Line, Look, Mark, PALETTE, Panel};
 use frixel_felt::check::{BoardCosts, BoardImage, SceneCheck};
@@ -35,7 +35,7 @@ pub(super) fn section(subject: &Subject, counts: &Counts) -> Section {
     }
     let mut panel = Panel::new(
         "",
-        Axis::linear("needed, percent of what there is", 0.0..100.0),
+        Axis::linear("needed, percent of the whole", 0.0..100.0),
         Axis::linear("", 0.0..parts.len().max(1) as f64).with_labels(0.0),
     );
     for ((what, _, needed, whole), line) in parts.iter().zip(0_u8..) {
@@ -68,7 +68,7 @@ fn parts(program: &Program, check: &SceneCheck, image_bytes: Option<f64>, counts
     parts
 }
 
-/// Estimated cycles of a tick that evaluates every layer, as it would without the grid.
+/// Estimated cycles of a tick that evaluates every layer, as without the grid.
 fn every_layer(program: &Program) -> u32 {
     let core = RigConfig::default().board.limits.core;
     let mut costs = LayerCosts::new(&program.header, core);
@@ -78,7 +78,7 @@ fn every_layer(program: &Program) -> u32 {
     cycles(core, costs.of_tick(layer_set(0..program.records.len())))
 }
 
-/// Bytes of flash of a NUCLEO's image: the image without any feature, and what each adds to it alone.
+/// Bytes of flash of a NUCLEO's image: the image without any feature, plus what each feature alone adds.
 fn image_bytes(image: &BoardImage, counts: &Counts) -> Option<f64> {
     let bytes = |build: &str| counts.get(&format!("g474.flash_{build}"));
     let none = bytes("none")?;
@@ -116,7 +116,7 @@ fn notes(
             .to_owned(),
     );
     let bytes = if let Some(bytes) = image_bytes {
-        format!("about {bytes:.0} bytes, the sum of what each adds to an image without any")
+        format!("about {bytes:.0} bytes, the sum of what each feature adds to an image without any")
     } else {
         let shown = |build| counts.get(build).map_or("unknown".to_owned(), |bytes| bytes.to_string());
         let [least, most] = ["g474.flash_grating_only", "g474.flash_full"].map(shown);

@@ -11,22 +11,22 @@ use super::page::{Section, cell, digits, row};
 
 /// Rows of `model/reference/generate.py`.
 const REFERENCE: &str = include_str!("stability.csv");
-/// The numbers that all fingers of the reference have, powers of two, and so exact in f32.
+/// Parameters of all fingers of the reference, exact in f32.
 const RADIUS_M: f64 = 1.0 / 128.0;
 const GAP_M: f64 = 1.0 / 131_072.0;
 const MU: f64 = 0.5;
 const MODULUS_PA: f64 = 131_072.0;
 const SHAPE_CONSTANT: f64 = 4.5;
-/// Part of the load at pull-off from which on a finger counts as near it.
+/// Distance to pull-off, as a part of its load, below which a finger counts as near pull-off.
 const NEAR: f64 = 0.01;
-/// Decades of attraction and load that are drawn; a cell is a decade of the one and two of the other.
+/// Decades of attraction and load that are drawn; a cell is one decade of attraction and two of load.
 const Q_DECADES: (i32, i32) = (-12, 12);
 const N_DECADES: (i32, i32) = (-6, 8);
 /// Where points without a load are drawn.
 const NO_LOAD: (f64, f64) = (1e-8, 1e-7);
 const COLOURS: (f64, f64) = (1e-17, 4e-15);
 
-/// What a row of the reference is about.
+/// The case of a row of the reference.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 enum Case {
@@ -50,28 +50,28 @@ struct Row {
     given_friction_n: f64,
     answer_voltage_v: f64,
     answer_voltage_v_rest: f64,
-    /// How much relative changes of the inputs grow in friction; of a pulled finger only.
+    /// Factor by which relative changes of the inputs grow in friction; for pulled fingers only.
     condition: Option<f64>,
 }
 
 /// Errors of friction from voltage, and of voltage from friction.
 type Errors = [f64; 2];
 
-/// A row with what the model makes of it.
+/// A row with the model's errors.
 struct Point {
     row: Row,
     /// Attraction and load, without units.
     q: f64,
     n: f64,
-    /// Part of the load that is missing to pull-off.
+    /// Distance to pull-off, as a part of its load; for pulled fingers only.
     part: Option<f64>,
     double: Errors,
-    /// None where the inputs are not exact in f32.
+    /// `None` where the inputs are not exact in f32.
     single: Option<Errors>,
 }
 
 impl Row {
-    /// The row with numbers that are exact in f32, of which the file has nine digits.
+    /// The row with its exact f32 inputs, which the file states with nine digits.
     fn rounded(self) -> Self {
         let single = |number: f64| f64::from(number as f32);
         let (stiffness_pa_per_m, stress_exponent) =
@@ -106,7 +106,7 @@ impl Row {
                 Ok(self.errors_of(&finger.on_gap(T::from_f64(GAP_M))?.under_load(load_n)?))
             }
             Case::Pulled => {
-                // Friction in total: that without voltage is not the finger's.
+                // Total friction, since a pulled finger has no natural friction.
                 let model = self.contact::<T>()?.under_pull(-load_n)?;
                 let friction_n = model.state(T::from_f64(self.voltage_v)).map(|state| state.friction_n.into());
                 let voltage_v = model.voltage_for_friction(T::from_f64(self.given_friction_n)).map(Into::into);
@@ -142,7 +142,7 @@ impl Row {
     }
 }
 
-/// Relative error against the nearest f64 of a reference and what it lacks; infinite without a finite answer.
+/// Relative error against a reference, given as its nearest f64 and the rest; infinite without a finite answer.
 fn relative_error(found: Option<f64>, nearest: f64, rest: f64) -> f64 {
     let found = found.unwrap_or(f64::NAN);
     // `found - nearest` is exact when both are close.
@@ -154,7 +154,7 @@ impl Point {
         self.double[0].max(self.double[1])
     }
 
-    /// Where it is, in words.
+    /// Its place, for display.
     fn place(&self) -> String {
         let Row { voltage_v, normal_force_n, stiffness_pa_per_m, stress_exponent, .. } = &self.row;
         match (self.part, stiffness_pa_per_m, stress_exponent) {
@@ -167,7 +167,7 @@ impl Point {
     }
 }
 
-/// A row of the table: what it is about, and which points belong to it.
+/// A row of the table: its name, and whether a point belongs to it.
 type Group = (&'static str, fn(&Point) -> bool);
 
 const GROUPS: [Group; 7] = [

@@ -14,9 +14,9 @@ const POLL_PERIOD: Duration = Duration::from_millis(1);
 /// Ticks that the board may run ahead of this host: 5 ms, so that a ping is in time for every host timeout.
 const SLICE_TICKS: u32 = 200;
 /// Wall time after which a clock that does not advance counts as stopped.
-const PATIENCE: Duration = Duration::from_mins(2);
-/// The board runs 5 ms ahead of a host that answers, its world follows it in steps of a millisecond, and a busy machine
-/// takes longer for either: 20 ms.
+const STOPPED_AFTER: Duration = Duration::from_mins(2);
+/// Tolerance of event times in ticks, 20 ms: the board runs 5 ms ahead of a host that answers, its world follows in
+/// steps of a millisecond, and a busy machine takes longer for either.
 const LATENESS_TICKS: u64 = 800;
 
 /// An emulated board with a host's end of its serial port, on a clock that follows the board's ticks.
@@ -35,7 +35,7 @@ pub struct EmulatedRig<'b> {
     ticks: Cell<u64>,
     /// Ticks that have passed on the host's clock.
     clock_ticks: Cell<u64>,
-    /// When the host's clock last advanced, or bytes were sent for which it stands still.
+    /// Time at which the host's clock last advanced, or bytes were sent for which it stands still.
     advanced_at: Cell<Instant>,
 }
 
@@ -61,7 +61,7 @@ impl<'b> EmulatedRig<'b> {
         })
     }
 
-    /// Takes over the board's count of ticks. Returns whether all that was sent has arrived.
+    /// Updates the clock from the board's count of ticks. Returns whether all bytes sent have arrived.
     fn follow(&self) -> Result<bool, EmulatorError> {
         let passed = self.board.ticks()?.wrapping_sub(self.ticks.get() as u32);
         self.ticks.update(|ticks| ticks + u64::from(passed));
@@ -75,19 +75,19 @@ impl<'b> EmulatedRig<'b> {
         Ok(has_arrived)
     }
 
-    /// Answers for the next slice of the board's time if all that was sent `has_arrived`.
+    /// Releases the next slice of the board's time if all bytes sent have arrived.
     fn answer(&self, has_arrived: bool) -> Result<(), EmulatorError> {
         if has_arrived {
             self.board.host_answers_to((self.ticks.get() as u32).wrapping_add(SLICE_TICKS))?;
         }
-        if self.advanced_at.get().elapsed() > PATIENCE {
-            return Err(EmulatorError::Silent { what: "a tick", seconds: PATIENCE.as_secs() });
+        if self.advanced_at.get().elapsed() > STOPPED_AFTER {
+            return Err(EmulatorError::Silent { what: "a tick", seconds: STOPPED_AFTER.as_secs() });
         }
         Ok(())
     }
 
-    /// Resets the board, and returns when it has started again. Nothing is on its way to the board meanwhile: the
-    /// emulator would lose it, and the clock would wait for it.
+    /// Resets the board, and returns when it has started again. Waits first until all bytes sent have arrived: the
+    /// emulator would lose them, and the clock would wait for them.
     fn reset(&self) -> Result<(), EmulatorError> {
         let starts = self.board.starts()?;
         wait_for("all bytes", || self.follow())?;
@@ -132,7 +132,7 @@ impl BoardRig for EmulatedRig<'_> {
             for tick in self.board.records() {
                 watch(&tick);
             }
-            // At its end the caller may have a ping to send, and the board waits for it.
+            // When this returns, the caller may have a ping to send, for which the board waits.
             if self.ticks.get() >= until_tick || received.len() > before {
                 return Ok(());
             }
@@ -169,12 +169,12 @@ impl Drop for EmulatedRig<'_> {
     }
 }
 
-/// Waits for the board to do something.
+/// Waits until `is_done`.
 fn wait_for(what: &'static str, is_done: impl Fn() -> Result<bool, EmulatorError>) -> Result<(), EmulatorError> {
     let begun = Instant::now();
     while !is_done()? {
-        if begun.elapsed() > PATIENCE {
-            return Err(EmulatorError::Silent { what, seconds: PATIENCE.as_secs() });
+        if begun.elapsed() > STOPPED_AFTER {
+            return Err(EmulatorError::Silent { what, seconds: STOPPED_AFTER.as_secs() });
         }
         sleep(POLL_PERIOD);
     }

@@ -26,7 +26,7 @@ pub(crate) enum EventKind {
     State(State),
     /// The board has not received a frame from its host for the scene's host timeout.
     HostSilent,
-    /// A virtual board was too far behind the wall clock, and has dropped the time beyond that.
+    /// A virtual board was too far behind the wall clock, and dropped time.
     TimeDropped,
 }
 
@@ -50,7 +50,7 @@ impl EventLog {
         Self { state, host_silent: false, events: Vec::new() }
     }
 
-    /// Compares a report of the board with the one before, and logs the changes.
+    /// Compares a report of the board with the previous one, and logs the changes.
     pub(crate) fn observe(&mut self, t_s: f64, state: State, flags: Flags) {
         let host_silent = flags.contains(Flags::HOST_SILENT);
         let begins_silent = host_silent && !self.host_silent;

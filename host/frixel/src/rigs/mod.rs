@@ -1,4 +1,4 @@
-//! The boards with a clock of their own that a scene can play on.
+//! Boards with a clock of their own on which a scene can play.
 //!
 //! - [`EmulatedRig`]: the firmware in an emulator, on the emulator's clock.
 //! - `PortLink`: a board on a serial port.
@@ -30,7 +30,7 @@ use frixel_driver::Link;
 use frixel_felt::recorder::Recorder;
 use frixel_play::Recorded;
 
-/// A link to a board that plays a scene, with the [`Recorder`] of that play. It is idle until a play has its own.
+/// A link to a board that plays a scene, with the [`Recorder`] of that play, which is idle until the play starts.
 pub(crate) trait RecordedLink: Link + Recorded<Recorder = Recorder> {}
 
 impl<L: Link + Recorded<Recorder = Recorder>> RecordedLink for L {}

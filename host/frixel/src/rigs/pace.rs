@@ -1,20 +1,20 @@
 //! The pace of virtual time that follows the wall clock, and the time that it drops.
 
-/// Most virtual time in one step, and so the largest delay of a client's bytes.
+/// Longest virtual time in one step, which is the largest delay of a client's bytes.
 const BATCH_MAX_S: f64 = 5e-3;
-/// Largest lag of virtual time behind the wall clock, for example on a busy machine. What is beyond it is dropped.
+/// Largest lag of virtual time behind the wall clock, for example on a busy machine. A larger lag drops time.
 const LAG_MAX_S: f64 = 50e-3;
 
-/// Time that a virtual board has dropped: it stood still meanwhile, and so did its finger.
+/// Time that a virtual board has dropped, in which board and finger stood still.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dropped {
     /// The dropped time, in seconds.
     pub seconds: f64,
-    /// How often time was dropped.
+    /// Number of times that time was dropped.
     pub times: u32,
 }
 
-/// Says how much virtual time is due at a time of the wall clock.
+/// Computes the virtual time that is due at a time of the wall clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pace(Dropped);
 
@@ -28,7 +28,7 @@ pub(super) struct Batch {
 }
 
 impl Pace {
-    /// What is due `elapsed_s` after the start on the wall clock, when `virtual_s` of virtual time have passed.
+    /// The time that is due `elapsed_s` after the start on the wall clock, once `virtual_s` of virtual time have passed.
     pub(super) fn next(&mut self, elapsed_s: f64, virtual_s: f64) -> Batch {
         let Self(dropped) = self;
         let behind_s = elapsed_s - dropped.seconds - virtual_s;

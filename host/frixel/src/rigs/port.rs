@@ -1,4 +1,4 @@
-//! A board on a serial port, which is observed through telemetry alone.
+//! A board on a serial port, observed through telemetry only.
 
 use std::time::Duration;
 

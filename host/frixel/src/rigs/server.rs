@@ -13,9 +13,9 @@ use super::server_log::ServerLog;
 use frixel_files::Inputs;
 
 /// Time that the server sleeps between two readings of the clock.
-const NAP: Duration = Duration::from_millis(1);
-/// Most reads of 4 KiB between two batches of ticks. This is more than a terminal buffers, and bounds the loop when a
-/// client writes as fast as the server reads.
+const CLOCK_PERIOD: Duration = Duration::from_millis(1);
+/// Largest number of reads of 4 KiB between two batches of ticks. It is more than a terminal buffers, and bounds the
+/// loop when a client writes as fast as the server reads.
 const READS_MAX: usize = 16;
 
 /// A virtual board on a pseudo-terminal.
@@ -61,7 +61,7 @@ impl Server {
                 let record = rig.step();
                 self.log.take(&record, rig)?;
             }
-            std::thread::sleep(NAP);
+            std::thread::sleep(CLOCK_PERIOD);
         }
         self.log.flush()?;
         Ok(pace.dropped())
@@ -69,9 +69,9 @@ impl Server {
 
     /// Transfers bytes between client and board.
     ///
-    /// Reads all that the client has written, and lets the rig drop bytes beyond its credit: bytes left in the terminal
-    /// would reach the board after the client has gone. A client that does not read blocks the board's line, but not
-    /// the board.
+    /// Reads all bytes that the client has written, and lets the rig drop bytes beyond its credit: bytes left in the
+    /// terminal would reach the board after the client has gone. A client that does not read blocks the board's line,
+    /// but not the board.
     fn exchange(&mut self, rig: &mut Rig) -> io::Result<()> {
         if self.terminal.client_has_gone()? {
             self.unwritten.clear();

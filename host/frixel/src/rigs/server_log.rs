@@ -14,7 +14,7 @@ use frixel_files::{Inputs, OutputFile, OutputFolder};
 
 /// The option that names the folder.
 const OPTION: &str = "--out";
-/// Virtual time between two flushes, which limits how much a killed server loses.
+/// Virtual time between two flushes, which bounds the loss when the server is killed.
 const FLUSH_PERIOD_S: f64 = 0.1;
 /// Rows a second of the force sensor under the screen.
 const FORCES_HZ: u32 = 1_000;
@@ -83,7 +83,7 @@ impl ServerLog {
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
     }
 
-    /// Writes that this board has dropped time, after `t_s` seconds.
+    /// Writes the event that this board dropped time, after `t_s` seconds.
     pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<()> {
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
         let event = BoardEvent { t_s, kind: EventKind::TimeDropped };

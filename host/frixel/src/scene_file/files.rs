@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::saved_file::SavedFile;
 
-/// The files that a scene was read from, each as it was just before it was read: the scene's own file, and those that
-/// it names, whether they could be read or not.
+/// The files of a scene, each with its state just before it was read: the scene's own file, and the files that it
+/// names, whether they could be read or not.
 #[derive(Clone)]
 pub(crate) struct SceneFiles {
     scene: SavedFile,
@@ -19,7 +19,7 @@ pub(crate) struct SceneFiles {
 }
 
 impl SceneFiles {
-    /// The scene's own file. Call this before the file is read.
+    /// Starts with the scene's own file. Call this before the file is read.
     pub(super) fn new(scene: &Path) -> Self {
         Self { scene: SavedFile::new(scene), named: Vec::new(), scene_bytes: Vec::new(), named_bytes: BTreeMap::new() }
     }
@@ -29,17 +29,17 @@ impl SceneFiles {
         self.named.push(SavedFile::new(named));
     }
 
-    /// Keeps what was read of the scene's own file.
+    /// Keeps the bytes of the scene's own file.
     pub(super) fn keep_scene(&mut self, bytes: &[u8]) {
         self.scene_bytes = bytes.to_vec();
     }
 
-    /// Keeps what was read of a file that the scene calls `name`.
+    /// Keeps the bytes of a file that the scene calls `name`.
     pub(super) fn keep_named(&mut self, name: &str, bytes: &[u8]) {
         self.named_bytes.insert(name.to_owned(), bytes.to_vec());
     }
 
-    /// The text of the scene's own file, as it was read; empty if it was not.
+    /// The text of the scene's own file, as it was read; empty if it was not read.
     pub(crate) fn scene_text(&self) -> String {
         String::from_utf8_lossy(&self.scene_bytes).into_owned()
     }
@@ -66,7 +66,7 @@ impl SceneFiles {
         self.scene.has_vanished()
     }
 
-    /// The files that the scene names outside of its own folder, also by links, as it names them from there.
+    /// The paths of named files that are outside of the scene's folder, directly or by links.
     pub(crate) fn outside(&self) -> impl Iterator<Item = &Path> {
         let folder = match self.path().parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,

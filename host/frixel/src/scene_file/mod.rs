@@ -24,7 +24,7 @@ use crate::input;
 pub(crate) use files::SceneFiles;
 pub(crate) use saved_file::CHECK_PERIOD;
 
-/// First bytes of a file, by which a picture is known.
+/// Number of first bytes of a file that identify a picture.
 const SIGNATURE_BYTES: u64 = 8;
 
 /// A scene without friction of its own.
@@ -65,7 +65,7 @@ pub enum SceneFileError {
 }
 
 impl SceneFileError {
-    /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` holds the reason why the
+    /// The error as JSON, in the form of [`CompileError::to_json`]. The field `unreadable` has the reason for which the
     /// file could not be read.
     pub fn to_json(&self) -> String {
         let (file, reason) = match self {
@@ -102,7 +102,7 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
     load_with_files(path).0
 }
 
-/// Reads a scene file, and returns the files that it was read from as well.
+/// Reads a scene file. Also returns the files that it was read from.
 pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
     let mut files = SceneFiles::new(path);
@@ -120,15 +120,15 @@ pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Sc
 /// The bytes of a scene file.
 fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
     let file = path.display().to_string();
-    // A photograph may be larger than any scene.
+    // Checked first, since a photograph may be larger than the limit of scenes.
     if input::read_head(path, SIGNATURE_BYTES).is_ok_and(|head| is_picture(&head)) {
         return Err(SceneFileError::Picture { file });
     }
     input::read(path, input::TOML_MAX_BYTES).map_err(|source| SceneFileError::Unreadable { file, source })
 }
 
-/// Reads a scene file with the bytes of the files that it names, for a play without these files. Results call it
-/// `name`.
+/// Reads a scene file with the bytes of the files that it names, for a play without these files. `name` is its name in
+/// results.
 pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
     let file = path.display().to_string();
     let bytes = read(path)?;
@@ -172,7 +172,7 @@ fn folder_of(scene: &Path) -> SceneFolder {
     SceneFolder(scene.parent().unwrap_or(Path::new("")).to_owned())
 }
 
-/// A finger and a screen to be used in place of a scene's own, each by the name of a file or of a bundled profile.
+/// A finger and a screen in place of a scene's own, each by the name of a file or of a bundled profile.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ProfileNames {
     /// The finger.
@@ -182,18 +182,17 @@ pub(crate) struct ProfileNames {
 }
 
 impl ProfileNames {
-    /// The file of the finger, if it is in one.
+    /// The file of the finger, if it is read from one.
     pub(crate) fn finger_file(&self) -> Option<&Path> {
         file_of::<FingerProfile>(self.finger.as_ref())
     }
 
-    /// The file of the screen, if it is in one.
+    /// The file of the screen, if it is read from one.
     pub(crate) fn screen_file(&self) -> Option<&Path> {
         file_of::<Screen>(self.screen.as_ref())
     }
 
-    /// Reads a scene file, as [`load_with_files`] does, with this finger and screen. Their files are among those
-    /// returned.
+    /// Reads a scene file like [`load_with_files`], with this finger and screen. Also returns their files.
     pub(crate) fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
         let (scene, mut files) = load_with_files(path);
         for file in [self.finger_file(), self.screen_file()].into_iter().flatten() {
@@ -213,15 +212,15 @@ impl ProfileNames {
         Ok(scene)
     }
 
-    /// A program without friction of its own: its reach and its contact are those of this finger and screen on a board,
-    /// at the highest voltage that a scene has by default.
+    /// A program without friction of its own, for the reach and the contact of this finger and screen on a board, at
+    /// the highest voltage that a scene has by default.
     pub(crate) fn without_scene(&self, limits: &BoardLimits, tick_hz: u32) -> Result<Program, SceneFileError> {
-        let scene = Scene::parse(NO_SCENE, "a scene of nothing", &BTreeMap::new())?;
+        let scene = Scene::parse(NO_SCENE, "an empty scene", &BTreeMap::new())?;
         Ok(compile(&self.applied_to(scene)?, limits, tick_hz)?)
     }
 }
 
-/// The file of a profile, if it is in one.
+/// The file of a profile, if it is read from one.
 pub(crate) fn file_of<P: Profile>(name: Option<&String>) -> Option<&Path> {
     name.filter(|name| P::bundled(name).is_none()).map(Path::new)
 }
@@ -264,8 +263,7 @@ impl Files for SceneFolder {
     }
 }
 
-/// The path of a file or folder that is there: itself, or one whose parts are written in other characters for the same
-/// text.
+/// The path of an existing file or folder: itself, or a path whose names differ only in the Unicode normal form.
 fn existing(path: PathBuf) -> PathBuf {
     let (Some(name), Some(folder), false) = (path.file_name().and_then(OsStr::to_str), path.parent(), path.exists())
     else {
@@ -291,7 +289,7 @@ mod tests {
 
     use super::*;
 
-    /// The simulator's finger before a scene is played is the bundled one on the bundled screen.
+    /// Before a scene plays, the simulator has the bundled finger on the bundled screen.
     #[test]
     fn the_simulator_has_the_example_finger() {
         let (finger, screen) = (FingerProfile::example(), Screen::example());
@@ -307,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_saved_once_it_is_read_is_saved() {
+    fn a_file_that_is_saved_right_after_it_is_read_counts_as_saved() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         for name in ["scene.toml", "one.png", "other.png"] {

@@ -8,11 +8,11 @@ use std::time::{Duration, SystemTime};
 /// while it is being written.
 pub(crate) const CHECK_PERIOD: Duration = Duration::from_millis(100);
 
-/// Checks after which a file that is not there counts as gone: half a second, longer than an editor takes to replace
+/// Number of checks after which a missing file counts as gone: half a second, longer than an editor takes to replace
 /// it.
 const CHECKS_GONE: u32 = 5;
 
-/// Detects when a file was saved, in place or by an editor that replaces it by another file.
+/// Detects when a file was saved, in place or by an editor that replaces it with another file.
 #[derive(Clone)]
 pub(super) struct SavedFile {
     path: PathBuf,
@@ -20,7 +20,7 @@ pub(super) struct SavedFile {
     read: Option<Fingerprint>,
     /// State of the file at the last check.
     checked: Option<Fingerprint>,
-    /// Checks in a row at which the file was not there.
+    /// Number of consecutive checks at which the file was missing.
     missed: u32,
 }
 
@@ -64,7 +64,6 @@ impl SavedFile {
     /// Whether the file has vanished, reported once.
     pub(super) fn has_vanished(&mut self) -> bool {
         let has_vanished = self.missed == CHECKS_GONE;
-        // Reported only once.
         self.missed += u32::from(has_vanished);
         has_vanished
     }

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use pipe::Pipe;
 
-/// Why samples are missing.
+/// Errors of the source of samples.
 #[derive(Debug, Error)]
 pub enum StreamError {
     /// The file does not exist, or is not a supported WAV file.
@@ -62,7 +62,7 @@ pub enum StreamError {
 /// If the file has more samples per second than the board has ticks, two or more samples are averaged into one;
 /// [`Feed::settings`] returns the resulting rate.
 ///
-/// Returns what a person should know of the file as well, a sentence each.
+/// Also returns notes on the file, one sentence each.
 pub fn wav(path: &Path, tick_hz: u32) -> Result<(Feed, Vec<String>), StreamError> {
     let wav::Wav { sample_hz, samples, notes } = wav::read(path, tick_hz)?;
     Ok((Feed::of(samples, sample_hz), notes))

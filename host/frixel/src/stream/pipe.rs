@@ -9,7 +9,7 @@ const PIECE_LEN: usize = 1024;
 /// Pieces in the queue. When it is full, the process that writes to the pipe blocks.
 const PIECES: usize = 4;
 
-/// A pipe that a separate thread reads: a read may block for ever, and the host must keep sending to the board.
+/// A pipe that a separate thread reads, since a read may block while the host must keep sending to the board.
 pub(super) struct Pipe {
     pieces: Receiver<io::Result<Vec<u8>>>,
     /// The first byte of a sample whose second byte has not arrived yet.

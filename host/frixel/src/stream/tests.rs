@@ -29,7 +29,7 @@ fn notes(path: &Path) -> Vec<String> {
     wav::read(path, TICK_HZ).unwrap().notes
 }
 
-/// As programs that write to a pipe leave it, which cannot go back to the header.
+/// Programs that write to a pipe cannot go back to the header.
 #[test]
 fn a_file_whose_length_is_not_known_plays_to_its_end() {
     let folder = tempdir().unwrap();
@@ -47,7 +47,7 @@ fn a_file_whose_length_is_not_known_plays_to_its_end() {
         changed.extend([1, 2, 3]);
         std::fs::write(&path, changed).unwrap();
         assert_eq!(read(&path), expected, "{length}");
-        assert!(notes(&path)[0].contains("the 16000 that are there are played"), "{:?}", notes(&path));
+        assert!(notes(&path)[0].contains("all 16000 bytes in the file are played"), "{:?}", notes(&path));
     }
     // A file without samples stays one, whatever else it has.
     let mut empty = whole[..data + 8].to_vec();
@@ -58,11 +58,11 @@ fn a_file_whose_length_is_not_known_plays_to_its_end() {
 }
 
 #[test]
-fn floats_beyond_full_scale_are_told() {
+fn floats_beyond_full_scale_are_noted() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("loud.wav");
     write(&path, spec(1, 1_000, 32, SampleFormat::Float), &[-1.0_f32, 1.0, 7.0, -1.5]);
-    assert_eq!(notes(&path), ["2 of 4 samples are beyond -1 to 1, and play as -1 or 1: export it less loud"]);
+    assert_eq!(notes(&path), ["2 of 4 samples are beyond -1 to 1 and play as -1 or 1: export it less loud"]);
 }
 
 #[test]

@@ -9,27 +9,27 @@ use hound::{SampleFormat, WavReader};
 use super::StreamError;
 use crate::input;
 
-/// Most samples of a channel: 25 minutes of 44.1 kHz.
+/// Largest number of samples of a channel: 25 minutes at 44.1 kHz.
 const FRAMES_MAX: u64 = 64 << 20;
 /// Bytes of a chunk's name and length, and of the names of file and form before the first chunk.
 const CHUNK_HEAD: usize = 8;
 const FORM_HEAD: usize = 12;
 
-/// What a WAV file has for a stream.
+/// The contents of a WAV file for a stream.
 pub(super) struct Wav {
     /// The sample rate, reduced to at most that of the board's ticks.
     pub(super) sample_hz: u32,
     /// The samples of the first channel.
     pub(super) samples: Vec<u16>,
-    /// What a person should know of them, a sentence each.
+    /// Notes on the file, one sentence each.
     pub(super) notes: Vec<String>,
 }
 
-/// Reads a WAV file, at `max_hz` samples a second at most.
+/// Reads a WAV file, reduced to at most `max_hz` samples a second.
 pub(super) fn read(path: &Path, max_hz: u32) -> Result<Wav, StreamError> {
     let failed = |source| StreamError::Wav { path: path.to_owned(), source };
     let mut bytes = input::read(path, input::WAV_MAX_BYTES).map_err(|error| failed(error.into()))?;
-    let mut notes = Vec::from_iter(state_length(&mut bytes));
+    let mut notes = Vec::from_iter(correct_length(&mut bytes));
     let mut reader = WavReader::new(Cursor::new(bytes)).map_err(failed)?;
     let (spec, frames) = (reader.spec(), u64::from(reader.duration()));
     if frames > FRAMES_MAX {
@@ -63,15 +63,14 @@ pub(super) fn read(path: &Path, max_hz: u32) -> Result<Wav, StreamError> {
         return Err(StreamError::Empty { path: path.to_owned() });
     }
     if beyond > 0 {
-        notes
-            .push(format!("{beyond} of {frames} samples are beyond -1 to 1, and play as -1 or 1: export it less loud"));
+        notes.push(format!("{beyond} of {frames} samples are beyond -1 to 1 and play as -1 or 1: export it less loud"));
     }
     Ok(Wav { sample_hz: spec.sample_rate / together, samples, notes })
 }
 
-/// States the length of the samples in the header of a file that does not know it: a program that writes to a pipe
-/// leaves 0 or a number beyond the end of the file. Returns what was done.
-fn state_length(wav: &mut [u8]) -> Option<String> {
+/// Corrects the length of the samples in the header: a program that writes to a pipe leaves 0 or a number beyond the
+/// end of the file. Returns a note if it was corrected.
+fn correct_length(wav: &mut [u8]) -> Option<String> {
     let mut at = FORM_HEAD;
     let mut frame_bytes = 1;
     let (start, stated) = loop {
@@ -93,8 +92,8 @@ fn state_length(wav: &mut [u8]) -> Option<String> {
         let len = u32::try_from(whole).ok()?.to_le_bytes();
         wav.get_mut(start - 4..start)?.copy_from_slice(&len);
         return Some(format!(
-            "its header says that it has {stated} bytes of samples, as one that was written to a pipe; the {whole} that are there \
-             are played"
+            "its header states {stated} bytes of samples, as after writing to a pipe; all {whole} bytes in the file are \
+             played"
         ));
     }
     None
@@ -107,12 +106,12 @@ fn chunk(wav: &[u8], at: usize) -> Option<([u8; 4], usize)> {
     Some((*name, usize::try_from(u32::from_le_bytes(len.try_into().ok()?)).ok()?))
 }
 
-/// Where the next chunk begins: at an even offset.
+/// Offset of the next chunk, which is even.
 fn after(start: usize, len: usize) -> Option<usize> {
     start.checked_add(len)?.checked_next_multiple_of(2)
 }
 
-/// Whether the rest of the file is whole chunks.
+/// Whether the rest of the file consists of whole chunks.
 fn are_chunks(wav: &[u8], mut at: usize) -> bool {
     while let Some((_, len)) = chunk(wav, at) {
         let Some(next) = after(at + CHUNK_HEAD, len) else { return false };
@@ -121,7 +120,7 @@ fn are_chunks(wav: &[u8], mut at: usize) -> bool {
     at >= wav.len() && at <= wav.len() + 1
 }
 
-/// The least number of samples to average into one such that the rate is at most `max_hz` and an integer.
+/// The least number of samples to average into one for an integer rate of at most `max_hz`.
 fn samples_together(sample_hz: u32, max_hz: u32) -> u32 {
     let least = sample_hz.div_ceil(max_hz.max(1)).max(1);
     (least..=sample_hz).find(|together| sample_hz.is_multiple_of(*together)).unwrap_or(sample_hz.max(1))

@@ -163,7 +163,9 @@ fn a_saved_scene_plays_anew_on_the_simulator() {
     let mut play = Running(command.spawn().unwrap());
     let said = || fs::read_to_string(folder.path().join("said")).unwrap();
     let summary = || fs::read_to_string(folder.path().join("out/summary.json")).unwrap_or_default();
-    until("the first play", || summary().contains("\"draft\":false") && said().contains("plays again when it is saved"));
+    until("the first play", || {
+        summary().contains("\"draft\":false") && said().contains("plays again when it is saved")
+    });
     fs::write(&path, scene("0.9")).unwrap();
     until("a draft", || summary().contains("\"draft\":true"));
     fs::write(&path, "version = 1\n[[layer]]\nkind = \"constat\"\n").unwrap();

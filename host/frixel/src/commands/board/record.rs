@@ -87,7 +87,8 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
 
 fn record<L: Link>(args: &RecordArgs, device: &mut Device<L>, interrupt: &Interrupt, rows: &mut Rows) -> Result<()> {
     device.subscribe(telemetry_period_ticks(device.hello().tick_hz, ROWS_HZ))?;
-    let ends = args.seconds.map_or("Ctrl-C ends the recording".to_owned(), |seconds| format!("recording for {seconds} s"));
+    let ends =
+        args.seconds.map_or("Ctrl-C ends the recording".to_owned(), |seconds| format!("recording for {seconds} s"));
     note(format_args!("slide a finger over the screen; {ends}"));
     let end = args.seconds.map(|seconds| device.now() + Duration::from_secs_f64(seconds));
     while !interrupt.is_requested() && end.is_none_or(|end| device.now() < end) {

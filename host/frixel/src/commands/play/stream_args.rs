@@ -45,9 +45,9 @@ impl StreamArgs {
         let waits = target == Target::Simulator;
         match (&self.stream, self.stream_hz) {
             (None, None) => Ok(None),
-            (None, Some(_)) => bail!(
-                "--stream-hz is the sample rate of standard input: put --stream - before it, or leave it out"
-            ),
+            (None, Some(_)) => {
+                bail!("--stream-hz is the sample rate of standard input: put --stream - before it, or leave it out")
+            }
             (Some(_), Some(sample_hz)) if self.is_standard_input() => {
                 Ok(Some(stream::raw(stdin(), sample_hz, tick_hz, waits)?))
             }

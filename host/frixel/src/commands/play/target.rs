@@ -41,8 +41,8 @@ impl Target {
         }
     }
 
-    /// The limits and the tick rate that scenes are compiled for. While the simulator plays, it reports no limit of tick
-    /// time, for drafts; scenes are compiled for its usual limits.
+    /// The limits and the tick rate that scenes are compiled for. While the simulator plays, it reports no limit of
+    /// tick time, for drafts; scenes are compiled for its usual limits.
     pub(super) fn limits(self, hello: &Hello) -> (BoardLimits, u32) {
         let board = RigConfig::default().board;
         if self == Self::Simulator { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }

@@ -1,4 +1,4 @@
-//! How the friction error of the brick scene grows with the latency of the touch source: `docs/inside/latency.csv` and
+//! Friction error of the brick scene over the latency of the touch source: `docs/inside/latency.csv` and
 //! `docs/inside/latency.svg`.
 
 use std::fmt::Write;
