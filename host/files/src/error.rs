@@ -38,7 +38,7 @@ pub enum Error {
     #[error("{0} is a recording of a person, which no result replaces: {advice}", advice = another(.1))]
     OfPerson(PathBuf, &'static str),
     /// A recording would replace a file.
-    #[error("{0} is there already, and a recording is not replaced: {new}, or add --overwrite", new = another(.1))]
+    #[error("{0} already exists, and a recording is not replaced: {new}, or add --overwrite", new = another(.1))]
     Exists(PathBuf, &'static str),
     /// A recording that was cut off has left its rows. The text says how to keep them.
     #[error("{0} has the rows of a recording that was cut off: {1}, or record anew with --overwrite")]

@@ -89,7 +89,7 @@ fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
     let Some(series_kohm) = series_kohm else { return Ok(board) };
     let board = board.behind(1e3 * series_kohm as f32);
     check_touched_board(&board.limits)
-        .map_err(at(format!("no firmware takes a series resistance of {series_kohm} kOhm")))?;
+        .map_err(at(format!("no firmware accepts a series resistance of {series_kohm} kOhm")))?;
     Ok(board)
 }
 

@@ -36,9 +36,9 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 
 use stroke::StrokeArgs;
 
-const EXIT_CODES: &str = "Exit codes: 0 when the command did what it says, 1 when it failed (its last line on standard \
-                          error says why), 2 when the command line is invalid. Results go to standard output; notes and \
-                          progress go to standard error, progress only if that is a terminal. Nothing is coloured.";
+const EXIT_CODES: &str = "Exit codes: 0 on success, 1 on failure (the last line on standard error gives the reason), \
+                          2 if the command line is invalid. Results go to standard output; notes and progress go to \
+                          standard error, progress only if that is a terminal. Nothing is coloured.";
 
 /// Friction textures on an electrovibration screen, in newtons.
 ///

@@ -45,7 +45,7 @@ pub(super) fn run(args: &NewArgs) -> Result<()> {
         None => with_stripes(),
     };
     if path.exists() || !OutputFile::new(&path, "the scene", &Inputs::new(&args.picture))?.write_new(text.as_bytes())? {
-        bail!("{} is there already, and is not overwritten: give another name, or remove it", path.display());
+        bail!("{} already exists, and is not overwritten: give another name, or remove it", path.display());
     }
     let (name, path) = (path.display(), quoted(&path));
     print_line(format_args!(

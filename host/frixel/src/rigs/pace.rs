@@ -28,7 +28,7 @@ pub(super) struct Batch {
 }
 
 impl Pace {
-    /// The time that is due `elapsed_s` after the start on the wall clock, once `virtual_s` of virtual time have passed.
+    /// The time that is due `elapsed_s` after the start on the wall clock, with `virtual_s` of virtual time passed.
     pub(super) fn next(&mut self, elapsed_s: f64, virtual_s: f64) -> Batch {
         let Self(dropped) = self;
         let behind_s = elapsed_s - dropped.seconds - virtual_s;

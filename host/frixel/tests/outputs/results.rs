@@ -37,7 +37,7 @@ fn no_command_replaces_its_input_a_recording_or_a_protected_file() {
             let refused = |says: &[&str]| {
                 let before = folder.text(&written);
                 let ran = folder.run(&line);
-                let is_refused = says.iter().chain(&["is there already, and "]).any(|says| ran.refused(says));
+                let is_refused = says.iter().chain(&["already exists, and "]).any(|says| ran.refused(says));
                 assert!(is_refused, "{line}, {written}: {}", ran.notes);
                 assert_eq!(folder.text(&written), before, "{line}, {written}");
                 fs::remove_file(folder.path(&written)).unwrap();

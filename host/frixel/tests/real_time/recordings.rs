@@ -76,7 +76,7 @@ fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
     for name in ["me.csv", "me.csv.partial"] {
         fs::write(folder.path().join(name), ROWS).unwrap();
     }
-    let says = "me.csv is there already, and a recording is not replaced: give another name to -o, or add --overwrite";
+    let says = "me.csv already exists, and a recording is not replaced: give another name to -o, or add --overwrite";
     expect_refused(&folder, &format!("board record --port {} -o me.csv", board.port), says);
     for port in [format!("{} --seconds 0.3", board.port), "nowhere".to_owned()] {
         expect_refused(&folder, &format!("board record --port {port} -o me.csv --overwrite"), "");

@@ -128,7 +128,7 @@ impl Table {
     /// A note on a series resistance that no firmware can be built for.
     fn not_built(&self) -> String {
         let refusal = self.check_built(self.series_ohm).err();
-        refusal.map_or_else(String::new, |error| format!("; no firmware takes that: {error}"))
+        refusal.map_or_else(String::new, |error| format!("; no firmware accepts that: {error}"))
     }
 
     fn check_built(&self, series_ohm: f64) -> Result<(), LimitsError> {
