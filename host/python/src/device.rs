@@ -1,4 +1,4 @@
-//! A board, simulated or at a serial port, that plays while Python's program calls.
+//! A board, simulated or at a serial port, that plays while the Python program calls.
 
 mod observed;
 mod worker;
@@ -25,13 +25,13 @@ use worker::{Interrupted, Report, Request, Trouble};
 
 /// The port of the simulated board.
 const SIMULATOR: &str = "sim";
-const CLOSED: &str = "this device is closed: open it again, by Device.open";
-const ENDED: &str = "the thread of this device has ended: open it again, by Device.open";
+const CLOSED: &str = "this device is closed: open it again with Device.open";
+const ENDED: &str = "the thread of this device has ended: open it again with Device.open";
 
-/// What Python gets after each call: state, time of the board in s, whether a stream is under way, sentences, and
+/// The result of each call for Python: state, time of the board in s, whether a stream is under way, sentences, and
 /// telemetry.
 type Answer = (&'static str, f64, bool, Vec<String>, Vec<Message>);
-/// Tick, state, flags, x and y in m, speed in m/s, electric friction that is asked for in N, and voltage in V rms.
+/// Tick, state, flags, x and y in m, speed in m/s, commanded electric friction in N, and voltage in V rms.
 type Message = (u32, &'static str, Vec<&'static str>, f32, f32, f32, f32, f32);
 
 /// A board in a thread of its own. The thread acts only on requests, so that the board is pinged only while the program
@@ -40,11 +40,11 @@ type Message = (u32, &'static str, Vec<&'static str>, f32, f32, f32, f32, f32);
 pub(crate) struct Device {
     port: String,
     hello: Hello,
-    /// `None` once it is closed.
+    /// `None` once closed.
     line: Mutex<Option<Line>>,
 }
 
-/// The line to the thread that has the board.
+/// The channels to the thread that owns the board.
 struct Line {
     requests: Sender<Request>,
     replies: Receiver<Result<Report, Trouble>>,
@@ -67,7 +67,7 @@ impl Line {
         Ok((Self { requests, replies, interrupted, thread }, hello))
     }
 
-    /// Sends a request, and waits for its report. On a signal, such as that of Ctrl-C, the board is disarmed.
+    /// Sends a request, and waits for its report. Disarms the board on a signal, such as that of Ctrl-C.
     fn ask(&self, request: Request) -> Result<Report, Trouble> {
         let ended = || Trouble::Play(ENDED.into());
         self.requests.send(request).map_err(|_| ended())?;
@@ -84,7 +84,7 @@ impl Line {
             }
         };
         let Some(signal) = signal else { return reply };
-        // The signal is reported to the program; a board that the commands do not reach stops by its host timeout.
+        // Only the signal is reported to the program; a board that is out of reach stops by its host timeout.
         if self.requests.send(Request::Stop).is_ok() {
             let _ = self.replies.recv();
         }
@@ -138,7 +138,7 @@ impl Device {
         self.hello.tick_hz
     }
 
-    /// What a person should know of the board, a sentence each.
+    /// Notes on the board, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<&'static str> {
         self.hello.notice_sentences().collect()
@@ -173,7 +173,7 @@ impl Device {
         self.ask(py, Request::Stream { samples, sample_hz })
     }
 
-    /// Requests telemetry so many times a second; 0 ends it.
+    /// Requests telemetry at this rate; 0 ends it.
     fn subscribe(&self, py: Python<'_>, messages_per_s: u32) -> PyResult<Answer> {
         let period_ticks = match messages_per_s {
             0 => 0,
@@ -182,7 +182,7 @@ impl Device {
         self.ask(py, Request::Subscribe { period_ticks })
     }
 
-    /// Lets some time pass on the board: at most a twentieth of a second.
+    /// Lets time pass on the board, at most 50 ms.
     fn listen(&self, py: Python<'_>, seconds: f64) -> PyResult<Answer> {
         self.ask(
             py,
@@ -210,7 +210,7 @@ impl Device {
         self.ask(py, Request::Stop)
     }
 
-    /// Disarms the board and closes the port. Returns the last answer of the board; none if it is closed already.
+    /// Disarms the board and closes the port. Returns the board's last answer; `None` if it is closed already.
     fn close(&self, py: Python<'_>) -> PyResult<Option<Answer>> {
         let closed = py.detach(|| {
             let line = self.line().take()?;

@@ -1,4 +1,4 @@
-//! Errors as the exceptions of `python/frixel/errors.py`.
+//! Conversion of errors to the exceptions of `python/frixel/errors.py`.
 
 use std::fmt::Display;
 
@@ -20,7 +20,7 @@ pub(crate) fn model_error(error: ParameterError) -> PyErr {
     Python::attach(|py| parameter_error(py, error))
 }
 
-/// The mistakes of a scene, or of a file that it names.
+/// The exception for the mistakes of a scene, or of a file that it names.
 pub(crate) fn scene_error(py: Python<'_>, error: &CompileError) -> PyErr {
     let mistakes = error.diagnostics.iter().map(|diagnostic| mistake(py, diagnostic)).collect::<PyResult<Vec<_>>>();
     match mistakes.and_then(|mistakes| PyList::new(py, mistakes)) {
@@ -35,7 +35,7 @@ fn mistake<'py>(py: Python<'py>, diagnostic: &Diagnostic) -> PyResult<Bound<'py,
     class.call1((file, line, column, text, diagnostic.nearest(), diagnostic.sentence()))
 }
 
-/// An exception of this class.
+/// An exception of the class with this name.
 pub(crate) fn raised<'py>(py: Python<'py>, class: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyErr {
     let exception = py.import(MODULE).and_then(|module| module.getattr(class)).and_then(|class| class.call1(arguments));
     exception.map_or_else(|error| error, PyErr::from_value)

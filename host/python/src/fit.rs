@@ -9,7 +9,7 @@ use super::error::raised;
 use super::profile::ProfileText;
 use super::signals::interruptible;
 
-/// Options of the command that sentences name, and the arguments in their place.
+/// Options of the command in the sentences of a fit, and the Python arguments in their place.
 const ARGUMENTS: [(&str, &str); 4] = [
     ("`frixel finger fit DATA.csv --law empirical`", "`law=\"empirical\"`"),
     ("--without", "`without`"),
@@ -17,7 +17,7 @@ const ARGUMENTS: [(&str, &str); 4] = [
     ("--load", "`normal_load_n`"),
 ];
 
-/// What to fit for, an object of `python/frixel/fitting.py`.
+/// Settings of a fit, an object of `python/frixel/fitting.py`.
 #[derive(FromPyObject)]
 pub(crate) struct FitSettings {
     empirical: bool,
@@ -30,8 +30,8 @@ pub(crate) struct FitSettings {
     screen: ProfileText,
 }
 
-/// Fits a finger to columns as CSV, which has one reader and one validation. Returns the summary as JSON, the summary
-/// in words, and the text of the finger's profile.
+/// Fits a finger to columns as CSV, with the reader and the validation of the command. Returns the summary as JSON, the
+/// summary in words, and the text of the finger's profile.
 #[pyfunction]
 pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> PyResult<(String, String, String)> {
     let screen: Screen = settings.screen.read(py)?;

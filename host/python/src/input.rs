@@ -1,4 +1,4 @@
-//! Files for the Python files.
+//! Files that the Python code reads.
 
 use std::path::PathBuf;
 

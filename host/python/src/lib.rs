@@ -1,9 +1,9 @@
-//! The compiled part of the Python module `frixel`: what the Python files beside it (`python/frixel`) call.
+//! The compiled part of the Python module `frixel`, called by the Python files beside it (`python/frixel`).
 //!
-//! Values cross as arrays, texts and plain objects; the types and documents for people are those of the Python
-//! files. Python's lock is released wherever something is computed.
+//! Values cross as arrays, texts and plain objects; the public types and their documentation are in the Python files.
+//! Computations release Python's lock.
 #![forbid(unsafe_code)]
-#![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take what was converted for them")]
+#![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take converted values")]
 
 mod device;
 mod error;

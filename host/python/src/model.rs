@@ -10,7 +10,7 @@ use super::error::{model_error, parameter_error};
 /// A finger on a coating, an object of `python/frixel/model.py`.
 #[derive(FromPyObject)]
 pub(crate) enum AnyContact {
-    /// On springs of one stiffness.
+    /// Of Winkler-Fuss springs.
     Springs {
         radius_m: f64,
         stiffness_pa_per_m: f64,
@@ -29,7 +29,7 @@ pub(crate) enum AnyContact {
     },
 }
 
-/// A finger on a coating whose parameters were checked.
+/// A finger on a coating, with checked parameters.
 enum Checked {
     Springs(Contact<f64>, Option<f64>),
     Soft(SoftContact<f64>),
@@ -57,8 +57,7 @@ impl AnyContact {
 }
 
 impl Checked {
-    /// The contact under a load. A negative load pulls a finger on springs without an outer radius; the others refuse
-    /// it.
+    /// The contact under a load. Only a finger on springs without an outer radius accepts a negative load, which pulls.
     fn under_load(&self, normal_load_n: f64) -> Result<Box<dyn ContactModel<f64>>, ParameterError> {
         Ok(match self {
             Self::Springs(contact, Some(outer_radius_m)) => Box::new(contact.within(*outer_radius_m, normal_load_n)?),
@@ -72,8 +71,8 @@ impl Checked {
 /// Arrays of equal length: contact radius, stiffness, friction and electric friction.
 type States<'py> = [Bound<'py, PyArray1<f64>>; 4];
 
-/// The contact at each voltage under the load beside it; not a number where there is none. Also the doubt in contacts
-/// that would be wider than the finger.
+/// The contact at each voltage under its load; not a number where there is no contact. Also a warning if contacts would
+/// be wider than the finger.
 #[pyfunction]
 pub(crate) fn eval_contact<'py>(
     py: Python<'py>,
@@ -106,7 +105,7 @@ pub(crate) fn eval_contact<'py>(
     Ok((columns.map(|column| column.into_pyarray(py)), doubt))
 }
 
-/// The rms voltage for each friction under the load beside it; not a number where there is none.
+/// The rms voltage for each friction under its load; not a number where no voltage has this friction.
 #[pyfunction]
 pub(crate) fn invert_contact<'py>(
     py: Python<'py>,
@@ -136,8 +135,8 @@ pub(crate) fn invert_contact<'py>(
     Ok(voltages.map_err(|error| parameter_error(py, error))?.into_pyarray(py))
 }
 
-/// Scales of voltage, friction and load of a finger on springs; `None` of a soft one. Refuses parameters that the model
-/// does not take.
+/// Scales of voltage, friction and load of a finger on springs; `None` for a soft finger. Rejects parameters outside
+/// of the model's range.
 #[pyfunction]
 pub(crate) fn contact_scales(contact: AnyContact) -> PyResult<Option<(f64, f64, f64)>> {
     Ok(match contact.checked().map_err(model_error)? {

@@ -1,4 +1,4 @@
-//! Files that the Python files write.
+//! Files that the Python code writes.
 
 use std::path::{Path, PathBuf};
 
@@ -12,13 +12,13 @@ use super::error::raised;
 /// Name of the argument in messages.
 const OPTION: &str = "the file";
 
-/// Writes files that belong together, the bytes of each by its path, all of them or none. They replace a recording of a
-/// person only with `overwrite`.
+/// Writes files that belong together, the bytes of each by its path: all or none. Replaces a recording of a person only
+/// with `overwrite`.
 #[pyfunction]
 pub(crate) fn write_files(py: Python<'_>, files: Bound<'_, PyDict>, overwrite: bool) -> PyResult<()> {
     let mut given: Vec<(PathBuf, PyBackedBytes)> = Vec::new();
     for (path, bytes) in files {
-        // A path, and never standard output: `./-` is a file.
+        // `-` is a file here, not standard output.
         given.push((Path::new(".").join(path.extract::<PathBuf>()?), bytes.extract()?));
     }
     let written = py.detach(|| {

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::error::{parameter_error, scene_error};
 
-/// A profile as Python has it: the text of its file with the file's name, or the name of a bundled one.
+/// A profile from Python: the text of its file with the file's name, or the name of a bundled profile.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct ProfileText {
     text: Option<String>,
@@ -19,7 +19,7 @@ impl ProfileText {
         if self.text.is_none() { Some(&self.name) } else { None }
     }
 
-    /// The text of its file; `None` of a bundled one.
+    /// The text of its file; `None` for a bundled profile.
     pub(crate) fn text(&self) -> Option<&str> {
         self.text.as_deref()
     }
@@ -39,7 +39,7 @@ impl ProfileText {
     }
 }
 
-/// Refuses a profile with mistakes. `kind` is `finger`, `screen` or `touch source`.
+/// Rejects a profile with mistakes. `kind` is `finger`, `screen` or `touch source`.
 #[pyfunction]
 pub(crate) fn check_profile(py: Python<'_>, kind: &str, profile: ProfileText) -> PyResult<()> {
     match kind {

@@ -16,7 +16,7 @@ use super::error::raised;
 use super::scene::NamedFiles;
 use super::signals::interruptible;
 
-/// How a play was made, beside its scene: with it, a recording is played again. Python keeps it as JSON.
+/// Origin of a play, apart from its scene: what a replay of its recording needs. Python keeps it as JSON.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Made {
     pub(crate) metadata: Metadata,
@@ -32,7 +32,7 @@ pub(crate) fn play_fields() -> Vec<(String, String, String)> {
     fields().into_iter().map(|field| (field.name, field.unit, field.meaning)).collect()
 }
 
-/// Columns as arrays by their names: numbers, not a number where nothing is known, and lists of texts.
+/// Columns by their names: arrays of numbers, with NaN for unknown values, and lists of texts.
 pub(crate) fn columns<'py>(py: Python<'py>, fields: &[Field], values: Vec<Values>) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     for (field, values) in fields.iter().zip(values) {
@@ -64,8 +64,8 @@ fn numbers(column: &Bound<'_, PyAny>) -> PyResult<impl Iterator<Item = Option<f6
     Ok(column.as_array().to_vec().into_iter().map(|value| value.is_finite().then_some(value)))
 }
 
-/// A play as Parquet, the bytes of the file that `frixel play --record` writes. `made` is what
-/// [`super::simulator::simulate`] or [`super::device::Device`] says of it.
+/// A play as Parquet, the bytes of the file that `frixel play --record` writes. `made` is the [`Made`] that
+/// [`super::simulator::simulate`] or [`super::device::Device`] returned.
 #[pyfunction]
 pub(crate) fn parquet<'py>(
     py: Python<'py>,
@@ -105,11 +105,11 @@ pub(crate) fn parquet<'py>(
 
 /// A finger or a screen in place of the scene's own: the text of its file, and its name.
 type Profile = Option<(Option<String>, String)>;
-/// What is read of a recording: columns, text of the scene, files that it names, finger and screen, [`Made`], and
+/// The contents of a recording: columns, text of the scene, files that it names, finger and screen, [`Made`], and
 /// whether the file was cut off.
 type Read<'py> = (Bound<'py, PyDict>, String, NamedFiles, [Profile; 2], String, bool);
 
-/// Reads the recording of a play, the bytes of its file, which messages call `name`.
+/// Reads the recording of a play from the bytes of its file. `name` is its name in messages.
 #[pyfunction]
 pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str) -> PyResult<Read<'py>> {
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (format!("{name}: {error}"),));
@@ -118,9 +118,9 @@ pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str)
     let (found, values): (Vec<Field>, Vec<Values>) =
         read.into_iter().map(|Column { field, values }| (field, values)).unzip();
     if found != fields() {
-        return Err(failed(&"this recording is not of a play: read the table by pandas.read_parquet"));
+        return Err(failed(&"this is not a recording of a play: read the table with pandas.read_parquet"));
     }
-    // A play on a board that the module has made has no options.
+    // A recording that `Device.record` made has no options.
     let options: Option<PlayOptions> = serde_json::from_value(metadata.play.clone()).ok();
     let profile = |name: fn(PlayOptions) -> Option<String>, file: &str| -> Profile {
         let text = metadata.files.get(file).and_then(SourceFile::bytes).and_then(|bytes| String::from_utf8(bytes).ok());
@@ -144,8 +144,8 @@ pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str)
     Ok((columns(py, &found, values)?, scene, of_scene, profiles, made, is_cut_off))
 }
 
-/// Plays a recording, the bytes of its file, again, and compares it. Messages call the file `name`. Returns the number
-/// of its rows.
+/// Plays a recording again from the bytes of its file, and compares it bit by bit. `name` is its name in messages.
+/// Returns the number of rows.
 #[pyfunction]
 pub(crate) fn replay(py: Python<'_>, recording: Vec<u8>, name: &str) -> PyResult<usize> {
     let replayed = interruptible(py, |goes_on| {

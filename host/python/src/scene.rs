@@ -23,10 +23,10 @@ use super::error::{raised, scene_error};
 use super::profile::ProfileText;
 use super::signals::interruptible;
 
-/// Pictures and profiles by the names that a scene has for them.
+/// Pictures and profiles by their names in a scene.
 pub(crate) type NamedFiles = BTreeMap<String, Vec<u8>>;
 
-/// A scene without mistakes, compiled for the simulated board. What a board refuses of it is clamped.
+/// A scene without mistakes, compiled for the simulated board: clamped where a board refuses it.
 #[pyclass(frozen, module = "frixel._frixel")]
 pub(crate) struct Scene {
     parsed: ParsedScene,
@@ -37,7 +37,7 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// The scene as it was read, for its screen and finger.
+    /// The parsed scene, with its screen and finger.
     pub(crate) fn parsed(&self) -> &ParsedScene {
         &self.parsed
     }
@@ -52,7 +52,7 @@ impl Scene {
         self.screen.as_ref()
     }
 
-    /// The compiled scene. What a board refuses of it is clamped.
+    /// The compiled scene, clamped where a board refuses it.
     pub(crate) fn program(&self) -> &Program {
         &self.program
     }
@@ -60,8 +60,8 @@ impl Scene {
 
 #[pymethods]
 impl Scene {
-    /// Reads the bytes of a scene, which messages call `name`. The files that it names are in `folder`, or else in
-    /// `files`.
+    /// Reads the bytes of a scene. `name` is its name in messages. The files that it names are taken from `files`, or
+    /// else from `folder`.
     #[new]
     #[pyo3(signature = (text, name, folder, files, finger, screen))]
     fn new(
@@ -122,19 +122,19 @@ impl Scene {
         (self.program.reach.friction_min_n(), self.program.reach.friction_max_n())
     }
 
-    /// Why a board refuses the scene, a sentence each.
+    /// Reasons for which a board refuses the scene, one sentence each.
     #[getter]
     fn refusals(&self) -> Vec<String> {
         self.program.refusals().map(ToString::to_string).collect()
     }
 
-    /// Reasons to doubt the scene, and what was rounded or clamped, a sentence each.
+    /// Reasons to doubt the scene, and what was rounded or clamped, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.program.warnings().map(ToString::to_string).chain(self.program.notes().map(str::to_owned)).collect()
     }
 
-    /// What `frixel check --json` prints.
+    /// The output of `frixel check --json`.
     fn check(&self, py: Python<'_>, touch: Option<ProfileText>, with_board: bool) -> PyResult<String> {
         let touch = touch.map(|touch| touch.read(py)).transpose()?;
         let world = WorldOptions { touch, ..WorldOptions::default() };
@@ -151,8 +151,7 @@ impl Scene {
         json.map_err(|error: String| raised(py, "PlayError", (error,)))
     }
 
-    /// Electric friction over the screen, N, row after row from the top, within a size in pixels; and sentences that a
-    /// person needs to read it.
+    /// Electric friction over the screen, N, as rows from the top, within a size in pixels; and its caption.
     fn map<'py>(
         &self,
         py: Python<'py>,
@@ -170,19 +169,19 @@ impl Scene {
     }
 }
 
-/// Keeps what it reads from a folder, so that the scene can be sent elsewhere.
+/// Files of a scene. Keeps the bytes that it reads from a folder, so that the scene can be sent elsewhere.
 pub(crate) struct ReadFiles {
     folder: Option<PathBuf>,
     read: RefCell<NamedFiles>,
 }
 
 impl ReadFiles {
-    /// Reads what is not among `read` from a folder.
+    /// Starts from the files in `read`; others are read from `folder`.
     pub(crate) fn new(folder: Option<PathBuf>, read: NamedFiles) -> Self {
         Self { folder, read: RefCell::new(read) }
     }
 
-    /// All that was read.
+    /// All files that were read.
     pub(crate) fn into_read(self) -> NamedFiles {
         self.read.into_inner()
     }

@@ -13,7 +13,7 @@ use super::scene::Scene;
 use super::signals::interruptible;
 use super::simulator::Stroke;
 
-/// Where the fingers go.
+/// The path of the fingers.
 #[derive(FromPyObject)]
 pub(crate) enum ScoreStroke<'py> {
     /// The name of a generated stroke.
@@ -22,7 +22,7 @@ pub(crate) enum ScoreStroke<'py> {
     Own(Stroke<'py>),
 }
 
-/// How to score, an object of `python/frixel/scoring.py`.
+/// Settings of a score, an object of `python/frixel/scoring.py`.
 #[derive(FromPyObject)]
 pub(crate) struct ScoreSettings<'py> {
     stroke: ScoreStroke<'py>,
@@ -51,8 +51,8 @@ impl ScoreSettings<'_> {
     }
 }
 
-/// Scores a scene. Returns what `frixel score --json` prints, the table in words, and the texts of `score.csv` and
-/// `score-layers.csv`.
+/// Scores a scene. Returns the output of `frixel score --json`, the table that `frixel score` prints, and the texts of
+/// `score.csv` and `score-layers.csv`.
 #[pyfunction]
 pub(crate) fn score_scene(
     py: Python<'_>,

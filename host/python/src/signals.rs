@@ -1,4 +1,4 @@
-//! Long work, without Python's lock, that Ctrl-C ends.
+//! Long work without Python's lock that Ctrl-C interrupts.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,15 +12,15 @@ use pyo3::prelude::*;
 /// Interval between checks of Python's signals.
 pub(crate) const SIGNALS_PERIOD: Duration = Duration::from_millis(50);
 
-/// The exception of a signal that has come, such as that of Ctrl-C.
+/// The exception of a pending signal, such as that of Ctrl-C.
 pub(crate) fn raised_by_signal() -> Option<PyErr> {
     #[allow(clippy::redundant_closure_for_method_calls, reason = "the method is of one lifetime only")]
-    let looked = Python::attach(|py| py.check_signals());
-    looked.err()
+    let checked = Python::attach(|py| py.check_signals());
+    checked.err()
 }
 
-/// Does `work` in another thread, while this one looks at Python's signals. After a signal the function that `work` is
-/// given breaks, and the result is the exception of the signal.
+/// Runs `work` in another thread, while this thread checks Python's signals. On a signal, the [`GoesOn`] that `work`
+/// gets breaks, and the result is the exception of the signal.
 pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(GoesOn<'_>) -> T + Send) -> PyResult<T> {
     let is_interrupted = AtomicBool::new(false);
     let goes_on = || break_if(is_interrupted.load(Ordering::Relaxed));

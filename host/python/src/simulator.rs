@@ -26,9 +26,9 @@ const M_PER_MM: f64 = 1e-3;
 pub(crate) enum Stroke<'py> {
     /// Straight from one place to another.
     Straight { from_mm: (f64, f64), to_mm: (f64, f64), speed_mm_s: f64, minimum_jerk: bool },
-    /// As a person moves.
+    /// The movements of a person.
     Human { seed: u64, seconds: Option<f64>, rough: bool },
-    /// Through places, not a number while the finger is off the screen.
+    /// Through places, which are NaN while the finger is off the screen.
     Rows {
         t_s: PyReadonlyArray1<'py, f64>,
         x_mm: PyReadonlyArray1<'py, f64>,
@@ -38,7 +38,7 @@ pub(crate) enum Stroke<'py> {
 }
 
 impl Stroke<'_> {
-    /// The options that a recording has of it.
+    /// The options as a recording stores them.
     fn options(&self) -> StrokeOptions {
         match self {
             Self::Straight { from_mm, to_mm, speed_mm_s, minimum_jerk } => {
@@ -60,7 +60,7 @@ impl Stroke<'_> {
         }
     }
 
-    /// The stroke of rows; `None` for one that is generated.
+    /// The stroke of rows; `None` for a generated stroke.
     fn of_rows(&self) -> Result<Option<SimulatedStroke>, StrokeFileError> {
         Ok(self.csv().map(|csv| StrokeFile::read(csv.as_bytes())).transpose()?.map(|file| file.stroke))
     }
@@ -85,7 +85,7 @@ impl Stroke<'_> {
     }
 }
 
-/// Refuses rows that are no stroke of a finger. Messages name the element of an array.
+/// Rejects rows that are not a stroke of a finger. Messages name the element of an array.
 #[pyfunction]
 pub(crate) fn check_stroke(py: Python<'_>, stroke: Stroke<'_>) -> PyResult<()> {
     stroke.of_rows().map(|_| ()).map_err(|error| match error {
@@ -109,7 +109,7 @@ pub(crate) struct Settings<'py> {
     rows_per_s: u32,
 }
 
-/// A play with all that it needs, checked.
+/// A checked play, with all its inputs.
 struct Play<'s> {
     program: &'s Program,
     options: PlayOptions,
@@ -135,7 +135,7 @@ impl Settings<'_> {
         Ok(Play { program, options, files: self.files(scene), simulation })
     }
 
-    /// The options that a recording has, with which `frixel replay` plays the same.
+    /// The options as a recording stores them, for `frixel replay`.
     fn options(&self, scene: &Scene, seconds: Option<f64>) -> PlayOptions {
         let name = |profile: &ProfileText| profile.bundled_name().unwrap_or(PlayOptions::FILE).to_owned();
         PlayOptions {
@@ -157,7 +157,7 @@ impl Settings<'_> {
         }
     }
 
-    /// The texts of what the options name [`PlayOptions::FILE`].
+    /// The texts of the files that the options name [`PlayOptions::FILE`].
     fn files(&self, scene: &Scene) -> BTreeMap<String, String> {
         let text = |profile: Option<&ProfileText>| profile.and_then(ProfileText::text).map(str::to_owned);
         let texts = [
@@ -170,7 +170,7 @@ impl Settings<'_> {
     }
 }
 
-/// Plays a scene on the simulated board. Returns the columns of the record, and the metadata of a recording as JSON.
+/// Plays a scene on the simulated board. Returns the columns of the recording, and its [`Made`] as JSON.
 #[pyfunction]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,

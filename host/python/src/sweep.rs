@@ -1,4 +1,4 @@
-//! Studies of many simulated fingers. Cells and results cross as the JSON that `frixel sweep` keeps.
+//! Studies of many simulated fingers. Cells and results cross as the JSON of `frixel sweep`.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -19,7 +19,7 @@ use super::signals::interruptible;
 /// Files by their names.
 type NamedBytes<'py> = BTreeMap<&'static str, Bound<'py, PyBytes>>;
 
-/// An exception that a plan's mistake can become.
+/// An exception, to which a plan's error converts.
 struct Raised(PyErr);
 
 impl From<PlanError> for Raised {
@@ -28,9 +28,8 @@ impl From<PlanError> for Raised {
     }
 }
 
-/// The cells of a plan, which messages call `name`. `scenes` has the texts and files of scenes that are not files in
-/// `folder`. An interrupt ends it before the next combination is compiled, once
-/// all of them are made.
+/// The cells of a plan. `name` is its name in messages. `scenes` has the texts and files of scenes that are not files
+/// in `folder`. An interrupt takes effect between the checks of two combinations.
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,
@@ -84,18 +83,17 @@ fn unreadable(sentence: impl Display) -> Raised {
 #[pyfunction]
 pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     let no_cell = |error: serde_json::Error| {
-        parameter_error(py, format!("a cell is a text that `sweep.cells` has made, and this one is not: {error}"))
+        parameter_error(py, format!("expected a cell made by `sweep.cells`: {error}"))
     };
     let cell: Cell = serde_json::from_str(cell).map_err(no_cell)?;
-    // Cells are played side by side, and each on one thread.
+    // Callers play cells in parallel, each on one thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
     let played = interruptible(py, |goes_on| pool.install(|| cell.play(goes_on)))?;
     played.map(|result| result.to_json()).map_err(|error| exception(py, &cell, error))
 }
 
-/// Puts results together, without a look at signals. Returns lines for a person, and the files that `frixel sweep`
-/// writes.
+/// Merges results, without checks for signals. Returns the summary's lines, and the files that `frixel sweep` writes.
 #[pyfunction]
 pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec<String>, NamedBytes<'_>)> {
     let study = py.detach(|| {
@@ -104,7 +102,7 @@ pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec
         Ok((study.summary(), study.files()))
     });
     let no_result = |error: CellResultError| {
-        parameter_error(py, format!("a result is a text that `sweep.play` has made, and this one is not: {error}"))
+        parameter_error(py, format!("expected a result made by `sweep.play`: {error}"))
     };
     let (summary, files) = study.map_err(no_result)?;
     let files = files.map_err(|error| raised(py, "FrixelError", (error.to_string(),)))?;

@@ -183,13 +183,13 @@ def test_a_plan_with_a_mistake_is_refused(fields: dict[str, Any], sentence: str)
 def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="this plan cannot be read"):
         sweep.cells(tmp_path / "nowhere.toml")
-    with pytest.raises(ParameterError, match=r"a cell is a text that `sweep\.cells` has made, and this one is not"):
+    with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")
     with pytest.raises(ParameterError, match=r"a cell is a text that `sweep\.cells` has made, found 3"):
         sweep.play(3)  # type: ignore[arg-type]
-    with pytest.raises(ParameterError, match="a study is of one result or more"):
+    with pytest.raises(ParameterError, match="a study needs one result or more"):
         sweep.Study([])
-    with pytest.raises(ParameterError, match=r"a result is a text that `sweep\.play` has made, and this one is not"):
+    with pytest.raises(ParameterError, match=r"expected a result made by `sweep\.play`"):
         sweep.Study(["{}"])
     (cell,) = sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1})
     with pytest.raises(ParameterError, match=r"this cell is of frixel 0\.0\.9"):

@@ -1,7 +1,8 @@
 """frixel: a touchscreen's friction made programmable.
 
-`frixel.model` is the contact model over arrays, `Scene` is what is felt where, `frixel.sweep` has studies of many
-simulated fingers, and `frixel.experiment` asks people; `docs/python/module.md` has the first steps.
+`frixel.model` is the contact model over arrays, a `Scene` describes the friction of a screen, `frixel.sweep` has
+studies of many simulated fingers, and `frixel.experiment` has experiments with people; `docs/python/module.md` has the
+first steps.
 """
 
 from . import errors, experiment, model, sweep

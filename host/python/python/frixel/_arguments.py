@@ -1,4 +1,4 @@
-"""Checks of arguments. Each refusal names the argument, what it takes, and what was found."""
+"""Checks of arguments. Each error names the argument, the expected value, and what was found."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import ParameterError
 
 SHOWN_MAX = 64
-"""Most characters of a value in a message."""
+"""Largest number of characters of a value in a message."""
 
 
 def refusal(name: str, expected: str, found: object) -> ParameterError:
-    """The exception for an argument: it is `expected`, and `found` is another value."""
+    """The exception for an argument that is not as `expected`."""
     return ParameterError(f"{name} is {expected}, found {shown(found)}")
 
 
 def shown(value: object) -> str:
-    """A value as messages show it, cut at 64 characters."""
+    """A value for messages, cut at 64 characters."""
     try:
         text = repr(value)
     except Exception:
@@ -73,14 +73,14 @@ def number(name: str, value: object, least: float, most: float = math.inf) -> fl
 
 
 def flag(name: str, value: object) -> bool:
-    """`True` or `False`, also NumPy's."""
+    """`True` or `False`, or NumPy's."""
     if not isinstance(value, (bool, np.bool_)):
         raise refusal(name, "True or False", value)
     return bool(value)
 
 
 def text(name: str, value: object) -> str:
-    """A text that UTF-8 can hold."""
+    """A text that can be encoded as UTF-8."""
     if not isinstance(value, str) or any("\ud800" <= character <= "\udfff" for character in value):
         raise refusal(name, "a text", value)
     return value
@@ -99,7 +99,7 @@ def path(name: str, value: str | PathLike[str]) -> Path:
 
 
 def check_callable(name: str, value: object) -> None:
-    """Refuse what is no function."""
+    """Refuse a value that is not callable."""
     if not callable(value):
         raise refusal(name, "a function", value)
 
@@ -114,7 +114,7 @@ def mapping(name: str, value: Mapping[Any, Any]) -> Mapping[str, Any]:
 
 
 def each(name: str, values: Iterable[Any]) -> Iterator[Any]:
-    """The values of a list, or of another iterable that is no text."""
+    """The values of a list, or of another iterable except a text."""
     if isinstance(values, (str, bytes)):
         raise refusal(name, "a list", values)
     try:
@@ -130,7 +130,7 @@ def array(name: str, values: ArrayLike) -> NDArray[np.float64]:
     except (TypeError, ValueError) as error:
         raise refusal(name, "numbers in an array or a list", values) from error
     if taken.dtype.kind == "O":
-        # Of such arrays NumPy takes None for nan.
+        # NumPy would convert None in such an array to nan.
         return np.array([real(name, value) for value in taken.flat], dtype=np.float64).reshape(taken.shape)
     if taken.dtype.kind not in "iuf":
         raise refusal(name, "numbers in an array or a list", values)

@@ -1,4 +1,4 @@
-"""What a notebook shows of scenes and recordings."""
+"""HTML of scenes and recordings, for notebooks."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 CHART_PX = (640, 200)
 """Width and height of a chart."""
 POINTS_MAX = 2000
-"""Most points of a line."""
+"""Largest number of points of a line."""
 
 
 def png(shades: NDArray[np.uint8]) -> bytes:
     """A picture in shades of grey, of shape (rows, columns), as a PNG file."""
     rows, columns = shades.shape
     header = struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0)
-    # Each row begins with the number of its filter: none.
+    # Each row begins with its filter type: 0, none.
     pixels = np.hstack([np.zeros((rows, 1), np.uint8), shades]).tobytes()
     parts = ((b"IHDR", header), (b"IDAT", zlib.compress(pixels)), (b"IEND", b""))
     chunks = (
@@ -30,7 +30,7 @@ def png(shades: NDArray[np.uint8]) -> bytes:
 
 
 def friction_map(friction_n: NDArray[np.float64], most_n: float) -> str:
-    """A map as an element of HTML: white without electric friction, black at the largest that is reached."""
+    """A map as an element of HTML: white without electric friction, black at the largest that can be reached."""
     shades = (255 * (1 - np.clip(friction_n / most_n, 0, 1))).round().astype(np.uint8)
     data = base64.b64encode(png(shades)).decode()
     return f'<img alt="friction map" style="border: 1px solid #888" src="data:image/png;base64,{data}">'

@@ -10,12 +10,12 @@ from .errors import FrixelError
 
 
 def name_of(path: str | PathLike[str]) -> str:
-    """What messages call a file: its path, as far as UTF-8 can hold it."""
+    """The name of a file in messages: its path, with replacements for what UTF-8 cannot encode."""
     return str(checked_path("path", path)).encode(errors="replace").decode()
 
 
 def read_bytes(path: str | PathLike[str], what: str, error: type[FrixelError], *, is_toml: bool = False) -> bytes:
-    """The bytes of a regular file of at most 512 MiB, 4 MiB if it is TOML, which messages call `what`.
+    """The bytes of a regular file of at most 512 MiB, or 4 MiB if it is TOML. `what` is its name in messages.
 
     Raises an `error` with a sentence.
     """

@@ -61,7 +61,7 @@ class Scene:
     def check(self, touch: TouchSource | None, with_board: bool) -> str: ...
     def map(self, width: int, height: int, speed_m_per_s: float) -> tuple[_Column, list[str]]: ...
 
-# Tick, state, flags, x and y in m, speed in m/s, electric friction that is asked for in N, and voltage in V rms.
+# Tick, state, flags, x and y in m, speed in m/s, commanded electric friction in N, and voltage in V rms.
 _Message = tuple[int, str, list[str], float, float, float, float, float]
 # State, time of the board in s, whether a stream is under way, sentences, and telemetry.
 Answer = tuple[str, float, bool, list[str], list[_Message]]

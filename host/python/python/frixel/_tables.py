@@ -1,4 +1,4 @@
-"""Tables in CSV, as rows of Python's values."""
+"""Tables in CSV, as rows of Python values."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _CELL = re.compile(r'(?:"(?P<text>(?:[^"]|"")*)"|(?P<plain>[^,\n]*))(?P<end>[,\n
 
 
 def rows(table: str) -> list[dict[str, Any]]:
-    r"""The rows of a table by the names of its columns: text in quotes as it is, numbers as numbers, nothing as `None`.
+    r"""The rows of a table, by the names of its columns: quoted cells as text, numbers as numbers, empty as `None`.
 
     >>> rows('layer,felt,share\n"1",2,0.5\n"a, ""b"" c",,maybe\n')
     [{'layer': '1', 'felt': 2, 'share': 0.5}, {'layer': 'a, "b" c', 'felt': None, 'share': 'maybe'}]

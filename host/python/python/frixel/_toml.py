@@ -11,7 +11,7 @@ from ._arguments import refusal
 from .errors import ParameterError
 
 NESTING_MAX = 64
-"""Most tables and lists inside of each other."""
+"""Largest nesting depth of tables and lists."""
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -37,7 +37,7 @@ def _lines(table: Mapping[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers and arrays as Python's."""
+    """NumPy's numbers and arrays as Python's own."""
     return value.tolist() if hasattr(value, "tolist") else value
 
 
@@ -48,13 +48,13 @@ def _key(key: object) -> str:
 
 
 def _text(text: str) -> str:
-    # TOML also wants the delete character escaped.
+    # TOML, unlike JSON, requires the delete character to be escaped.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _inline(value: Any, depth: int = 0) -> str:
     if depth > NESTING_MAX:
-        raise ParameterError(f"tables and lists stand inside of each other {NESTING_MAX} times at most: give fewer")
+        raise ParameterError(f"tables and lists are nested at most {NESTING_MAX} deep: nest fewer")
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""A board that plays: one at a serial port, or a simulated one."""
+"""A board that plays, at a serial port or simulated."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ WAIT_MAX_S = 1e9
 """Longest wait, s."""
 
 SIMULATED = "sim"
-"""The port of the simulated board, which plays a draft of what a board refuses."""
+"""The port of the simulated board, which plays a scene that a board refuses as a draft."""
 
 STEP_S = 0.05
-"""Longest time between two looks at an interrupt."""
+"""Longest time between two checks for an interrupt, s."""
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class Telemetry:
     """A board's report on one tick."""
 
     t_s: float
-    """Time since power-on, s; it begins anew after 2^32 ticks."""
+    """Time since power-on, s; wraps after 2^32 ticks."""
     state: str
     """`disarmed`, `armed`, `active` or `faulted`."""
     flags: tuple[str, ...]
-    """Limits of the output and state of the finger, a word each (`docs/design/outputs.md`)."""
+    """Limits of the output and state of the finger, one word each (`docs/design/outputs.md`)."""
     x_mm: float
     """Estimated place of the finger, from the left edge of the screen."""
     y_mm: float
@@ -49,7 +49,7 @@ class Telemetry:
     speed_mm_s: float
     """Estimated sliding speed."""
     commanded_electric_friction_n: float
-    """Electric friction that the scene asks for, N: what the drive adds to the friction without voltage."""
+    """Electric friction that the board commands, N: what the drive adds to the friction without voltage."""
     voltage_v_rms: float
     """Rms voltage of the envelope, V."""
 
@@ -74,7 +74,7 @@ class Device:
 
     @classmethod
     def open(cls, port: str, *, arm: bool = False) -> Device:
-        """Connect to a board, which plays nothing yet.
+        """Connect to a board. It plays nothing yet.
 
         Parameters
         ----------
@@ -88,7 +88,7 @@ class Device:
         Raises
         ------
         PlayError
-            There is no such port, no board answers there, or it has an electrode and `arm` is not given.
+            The port does not exist, no board answers there, or the board has an electrode and `arm` is not given.
         """
         if not isinstance(port, str):
             raise refusal("a port", 'a path or "sim"', port)
@@ -99,8 +99,8 @@ class Device:
         """The open device, whose thread a forked child does not have."""
         if os.getpid() != self._process:
             raise PlayError(
-                f"the board at {self._port} belongs to the process that opened it, and this is a fork of that: open it "
-                'here, or begin processes by multiprocessing.get_context("spawn")'
+                f"the board at {self._port} belongs to the process that opened it, and this is a fork of it: open it "
+                'here, or start processes with multiprocessing.get_context("spawn")'
             )
         return self._opened
 
@@ -113,7 +113,7 @@ class Device:
         try:
             self.close()
         except FrixelError:
-            # The error that ends the block says more than the one of a board that is gone.
+            # The error that ends the block says more than the error of closing.
             if kind is None:
                 raise
 
@@ -131,7 +131,7 @@ class Device:
             self._take(answer)
 
     def play(self, scene: Scene | Mapping[str, Any]) -> None:
-        """Upload a scene and play it from its beginning. What played before ends.
+        """Upload a scene and play it from its beginning, in place of any other.
 
         A real board needs its arm switch: released and pressed since it was last disarmed, and held while it plays.
 
@@ -155,13 +155,13 @@ class Device:
     def replace(self, scene: Scene | Mapping[str, Any]) -> list[str]:
         """Play another scene from the next tick on, without a break.
 
-        Layers of the same name keep what `set_layer` and `trigger` have set. If the board refuses the scene, the one
-        before plays on.
+        Layers of the same name keep what `set_layer` and `trigger` have set. If the board refuses the scene, the
+        previous one keeps playing.
 
         Returns
         -------
         list of str
-            What a person should know of the change, a sentence each; mostly none.
+            Notes on the change, one sentence each; mostly none.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class Device:
         return self._take(self._device.replace(scene.compiled))
 
     def set_layer(self, layer: str | int, *, on: bool | None = None, gain: float | None = None) -> list[str]:
-        """Switch a layer on or off, or set the factor on its friction; what is not given stays.
+        """Switch a layer on or off, or set the gain on its friction. An argument that is not given changes nothing.
 
         Parameters
         ----------
@@ -190,45 +190,45 @@ class Device:
         on
             Whether it is on from now on.
         gain
-            The factor, from -100 to 100, in place of the scene's.
+            Gain in place of the scene's, from -100 to 100.
 
         Returns
         -------
         list of str
-            What is clamped from now on, a sentence; mostly none.
+            A note on what is clamped from now on; mostly none.
 
         Raises
         ------
         ParameterError
-            There is no such layer, or the gain leads out of reach. All stays as it was.
+            There is no such layer, or the gain leads out of reach. Nothing is changed.
         PlayError
             No scene plays, or the board has stopped, or is gone.
         """
         if on is None and gain is None:
-            raise ParameterError("a layer is changed by `on`, by `gain` or by both: give one")
+            raise ParameterError("`on` or `gain` changes a layer: give one or both")
         if gain is not None:
             gain = number("gain", gain, -_frixel.GAIN_MAX, _frixel.GAIN_MAX)
         return self._take(self._device.set_layer(_layer(layer), None if on is None else flag("on", on), gain))
 
     def trigger(self, layer: str | int, seconds: float | None = None) -> list[str]:
-        """Switch a layer that is off on, and off again later, in a call of `wait` or `telemetry`.
+        """Play a layer that is off for some time. A later call of `wait` or `telemetry` switches it off again.
 
         Parameters
         ----------
         layer
             Its name in the scene, or its number as in messages, from 1.
         seconds
-            For how long; without it, for its pattern or its first burst, or else for 0.1 s.
+            Duration, s. Default: that of its pattern or its first burst, or else 0.1 s.
 
         Returns
         -------
         list of str
-            What is clamped meanwhile, a sentence; mostly none.
+            A note on what is clamped meanwhile; mostly none.
 
         Raises
         ------
         ParameterError
-            There is no such layer, or a trigger of it plays nothing.
+            There is no such layer, or a trigger of it would play nothing.
         PlayError
             No scene plays, or the board has stopped, or is gone.
         """
@@ -237,7 +237,7 @@ class Device:
         return self._take(self._device.trigger(_layer(layer), seconds))
 
     def stream(self, samples: ArrayLike, sample_hz: int) -> None:
-        """Begin to stream to the stream layers of the scene that plays. The samples are sent in `wait` and `telemetry`.
+        """Begin to stream to the stream layers of the scene. The samples are sent in `wait` and `telemetry`.
 
         Parameters
         ----------
@@ -249,7 +249,7 @@ class Device:
         Raises
         ------
         ParameterError
-            A sample is not from 0 to 1, or the rate is not taken.
+            A sample is not from 0 to 1, or the rate is out of range.
         PlayError
             No layer of the scene plays a stream, or the board has stopped, or is gone.
         """
@@ -268,7 +268,7 @@ class Device:
         Parameters
         ----------
         seconds
-            How long, at most 1e9 s; without it, until the stream is played.
+            Duration, at most 1e9 s. Default: until the stream has been played.
 
         Raises
         ------
@@ -283,12 +283,12 @@ class Device:
                 self._take(self._device.listen(self._step_s(until_s)))
 
     def telemetry(self, seconds: float | None = None, *, messages_per_s: int = 100) -> Iterator[Telemetry]:
-        """Iterate over the board's telemetry while time passes on it. The iterator may be left at any time.
+        """Iterate over the board's telemetry while time passes on the board. The iterator may be left at any time.
 
         Parameters
         ----------
         seconds
-            How long, at most 1e9 s; without it, without an end.
+            Duration, at most 1e9 s. Default: no end.
         messages_per_s
             Messages a second, at most 1000.
 
@@ -303,7 +303,7 @@ class Device:
         return self._messages(lasts_s, whole("messages_per_s", messages_per_s, 1, _frixel.TELEMETRY_MAX_HZ))
 
     def _messages(self, lasts_s: float, messages_per_s: int) -> Iterator[Telemetry]:
-        # What was received before is old.
+        # This also discards the messages received before.
         self._take(self._device.subscribe(messages_per_s))
         until_s = self._now_s + lasts_s
         try:
@@ -332,9 +332,9 @@ class Device:
         Parameters
         ----------
         scene
-            What to play.
+            The scene to play.
         seconds
-            How long.
+            Duration, s.
         messages_per_s
             Rows a second, at most 1000.
         on_active
@@ -343,13 +343,13 @@ class Device:
         Returns
         -------
         Recording
-            What the board reports: place, speed, what is asked for, voltage and flags; `t_s` is 0 at the first row.
-            Columns that only a simulator knows, such as the felt friction, are not-a-number.
+            The board's reports: place, speed, commanded friction, voltage and flags; `t_s` is 0 at the first row.
+            Columns that only a simulator knows, such as felt friction, are NaN.
 
         Raises
         ------
         ParameterError
-            A value is not taken. Nothing is played.
+            A value is not accepted. Nothing is played.
         SceneError, PlayError, KeyboardInterrupt
             As `play` and `telemetry`. The board is disarmed.
 
@@ -366,14 +366,14 @@ class Device:
         messages: list[Telemetry] = []
         try:
             self.play(scene)
-            is_said = on_active is None
+            is_reported = False
             for message in self.telemetry(seconds, messages_per_s=messages_per_s):
-                if on_active is not None and not is_said and message.state == "active":
+                if on_active is not None and not is_reported and message.state == "active":
                     on_active()
-                    is_said = True
+                    is_reported = True
                 messages.append(message)
         except BaseException:
-            # Of a board that is gone, the output goes to zero by itself.
+            # If the board is gone, its output goes to zero by itself.
             with suppress(FrixelError):
                 self.stop()
             raise
@@ -396,7 +396,7 @@ class Device:
         return Recording(columns, settings, scene, self._device.made(messages_per_s))
 
     def stop(self) -> None:
-        """Set the output to zero and disarm the board, which stays connected: for a break. `play` arms it again.
+        """Set the output to zero and disarm the board, which stays connected. `play` arms it again.
 
         Raises
         ------
@@ -419,14 +419,14 @@ class Device:
 
     @property
     def notes(self) -> list[str]:
-        """What a person should know of the board, a sentence each; mostly none."""
+        """Notes on the board, one sentence each; mostly none."""
         return self._device.notes
 
     def __repr__(self) -> str:
         return f"<frixel.Device: {self.board} at {self._port}, {self._state}>"
 
     def _step_s(self, until_s: float) -> float:
-        """How long to listen next, s. At least two ticks: a rest that is rounded to zero would never pass."""
+        """Duration of the next step, s. At least two ticks: a remainder that is rounded to zero would never pass."""
         return min(STEP_S, max(until_s - self._now_s, 2 / self._device.ticks_per_s))
 
     @contextmanager
@@ -435,7 +435,7 @@ class Device:
         try:
             yield
         except KeyboardInterrupt:
-            # Of a board that is gone, the output goes to zero by itself.
+            # If the board is gone, its output goes to zero by itself.
             with suppress(FrixelError):
                 self.stop()
             raise

@@ -22,7 +22,7 @@ class FrixelError(Exception):
 
 
 class ParameterError(FrixelError, ValueError):
-    """A value that is not accepted: the message says what was found, and what is expected."""
+    """A value that is not accepted: the message has what was found, and what was expected."""
 
 
 class ColumnError(ParameterError, KeyError):
@@ -33,7 +33,7 @@ class ColumnError(ParameterError, KeyError):
 
 
 class FrixelWarning(UserWarning):
-    """A result to doubt: the message says why, and what to do."""
+    """A doubtful result: the message says why, and what to do."""
 
 
 class FitError(FrixelError, ValueError):
@@ -41,7 +41,7 @@ class FitError(FrixelError, ValueError):
 
 
 class PlayError(FrixelError):
-    """A board, simulated or not, does not take a scene, or stopped while it played."""
+    """A board, simulated or real, refuses a scene, or stopped while it played."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Mistake:
     """One mistake in a scene, or in a file that it names."""
 
     file: str
-    """The file, as messages call it."""
+    """Name of the file in messages."""
     line: int
     """Line, from 1."""
     column: int
@@ -63,7 +63,7 @@ class Mistake:
 
 
 class SceneError(FrixelError, ValueError):
-    """A scene has mistakes, or cannot be read. The message has a line for each mistake.
+    """A scene has mistakes, or cannot be read. The message has one line per mistake.
 
     Attributes
     ----------

@@ -77,31 +77,32 @@ def fit(
     ----------
     data
         Columns of shape (n,), for example a `pandas.DataFrame`: `voltage_v_rms` (V), `normal_force_n` and `friction_n`
-        (N), and if they are known `time_s` (s), `stroke` (the name or number of each stroke) and `speed_mm_s` (mm/s);
-        `nan` in one of these is unknown. The finger slides in strokes, while the drive is switched on and off. Names
-        may state other units, and tables of means are data, as for the command; others are ignored. Messages count
-        rows as in a CSV file, whose header is row 1.
+        (N), and optionally `time_s` (s), `stroke` (the name or number of each stroke) and `speed_mm_s` (mm/s), with
+        `nan` for unknown values. The finger slides in strokes, while the drive is switched on and off. Names may state
+        other units, and tables of means are accepted, as by the command; other columns are ignored. Messages count rows
+        as in a CSV file, whose header is row 1.
     law
-        `contact` for the contact model, which data that contradict it refuse; `empirical` for a law of its own.
+        `contact` for the contact model, which refuses data that contradict it; `empirical` for a law fitted to the
+        data alone.
     screen
         The screen that friction was measured on.
     voltage_v_rms
         Voltage at which the contact model's electric friction is stated, V rms.
     normal_load_n
-        Normal load of the profile, N; without it, the median of the data.
+        Normal load of the profile, N. Default: the median of the data.
     without
         Names of strokes to leave out.
     method, date
-        How and when friction was measured, for the profile; the day is today unless it is given.
+        How and when friction was measured, for the profile. Default date: today.
     seed
         Seed of the bootstrap that gives the intervals.
 
     Raises
     ------
     ParameterError
-        A column has another length.
+        Columns differ in length, or a value is not accepted.
     FitError
-        A column is missing or has a wrong number, or the data do not give a finger.
+        A column is missing or has an invalid number, or the data do not determine a finger.
     KeyboardInterrupt
         Ctrl-C, at once.
     """
@@ -128,9 +129,9 @@ def fit(
 
 
 def _csv(data: Mapping[str, ArrayLike]) -> str:
-    """The columns as the table that the command reads: one reader, one validation, and the same numbers of rows."""
+    """The columns as a CSV table, for the reader and the validation of the command, with the same row numbers."""
     columns = {str(name): np.asarray(data[name]) for name in data}
-    # A word or a number beside the columns, such as a participant, is not one of them.
+    # A single word or number, such as a participant, is not a column.
     columns = {name: values for name, values in columns.items() if values.ndim > 0}
     for name, values in columns.items():
         if values.dtype.kind in "mM":
@@ -141,7 +142,7 @@ def _csv(data: Mapping[str, ArrayLike]) -> str:
     if not columns:
         raise FitError("the data have no columns: give voltage_v_rms, normal_force_n and friction_n")
     text = io.StringIO()
-    # In quotes, a word is neither a comment nor a separator.
+    # Quoted, a word is neither a comment nor a separator.
     writer = csv.writer(text, quoting=csv.QUOTE_NONNUMERIC, lineterminator="\n")
     writer.writerow(columns)
     writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))

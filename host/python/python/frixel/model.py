@@ -32,7 +32,7 @@ __all__ = ["Contact", "SoftContact", "States", "eval", "invert"]
 
 @dataclass(frozen=True)
 class Contact:
-    """A paraboloid finger on springs of one stiffness, Eqs. (1), (10) of Argatov and Borodich, on a coating.
+    """A paraboloid finger on Winkler-Fuss springs, Eqs. (1), (10) of Argatov and Borodich, on a coating.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Contact:
 
     @property
     def voltage_scale_v_rms(self) -> float:
-        """The voltage `V* = sqrt(2 k g^3/eps0)` at which the model's one curve has the attraction 1, V rms."""
+        """The voltage scale `V* = sqrt(2 k g^3/eps0)`, V rms: the model's dimensionless attraction is `(V/V*)^2`."""
         return self._scales()[0]
 
     @property
@@ -123,7 +123,7 @@ class SoftContact:
 
 
 def _check(contact: Contact | SoftContact) -> None:
-    """Make floats of the fields, and refuse what the model does not take."""
+    """Convert the fields to floats, and refuse values outside of the model's range."""
     for field in fields(contact):
         value = getattr(contact, field.name)
         if not (value is None and field.default is None):
@@ -132,7 +132,7 @@ def _check(contact: Contact | SoftContact) -> None:
 
 
 class States(NamedTuple):
-    """Contacts, as arrays of one shape; numbers if all that was given are numbers."""
+    """Contacts, as arrays of one shape, or as numbers if all arguments are numbers."""
 
     contact_radius_m: NDArray[np.float64]
     """Contact radius `a`, m."""
@@ -155,18 +155,18 @@ def eval(contact: Contact | SoftContact, voltage_v_rms: ArrayLike, normal_load_n
         Rms voltages of 0 or more, V. Any shape.
     normal_load_n
         Normal loads, N, of a shape that NumPy broadcasts with the voltages. A negative load pulls; only a `Contact`
-        without an outer radius takes one.
+        without an outer radius accepts one.
 
     Returns
     -------
     States
-        Arrays of the broadcast shape. An element is not a number where there is no contact: it is pulled off, or would
-        pass the outer radius, or is beyond the range of numbers.
+        Arrays of the broadcast shape. An element is NaN where there is no contact: it is pulled off, or would pass the
+        outer radius, or is beyond the range of numbers.
 
     Raises
     ------
     ParameterError
-        A voltage or load is not finite, or not taken.
+        A voltage or load is not finite, or not accepted.
 
     Warns
     -----
@@ -198,19 +198,19 @@ def invert(
     normal_load_n
         Normal loads, N, of a shape that NumPy broadcasts with the frictions.
     electric
-        Whether `friction_n` is the electric friction `F_T - mu F_N`. Under a load it is small beside the total, so that
-        the voltage of a total has fewer digits.
+        Whether `friction_n` is the electric friction `F_T - mu F_N`. Under a load, electric friction is a small part of
+        the total, so the voltage from a total has fewer correct digits.
 
     Returns
     -------
     numpy.ndarray
-        Rms voltages, V, of the broadcast shape. An element is not a number where no voltage has this friction: it is
-        below the friction at no voltage, or on the unstable branch, or beyond the outer radius.
+        Rms voltages, V, of the broadcast shape. An element is NaN where no voltage has this friction: it is below the
+        friction at no voltage, or on the unstable branch, or beyond the outer radius.
 
     Raises
     ------
     ParameterError
-        A friction or load is not finite, or not taken.
+        A friction or load is not finite, or not accepted.
     """
     friction, load = _broadcast(contact, {"friction_n": friction_n, "normal_load_n": normal_load_n})
     voltages = _frixel.invert_contact(contact, _flat(friction), _flat(load), flag("electric", electric))

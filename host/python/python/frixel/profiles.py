@@ -1,4 +1,4 @@
-"""Fingers, screens and touch sources: what a scene is played on, each the text of a TOML file."""
+"""Profiles of fingers, screens and touch sources, each the text of a TOML file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["Finger", "Screen", "TouchSource"]
 @dataclass(frozen=True)
 class _Profile:
     text: str | None
-    """The text of the file; `None` of one that comes with the package."""
+    """The text of the file; `None` for a bundled profile."""
     name: str
     """Its name in messages."""
 
@@ -36,18 +36,18 @@ class _Profile:
 
     @classmethod
     def bundled(cls, name: str) -> Self:
-        """One that comes with the package, by its name.
+        """The bundled profile of this name.
 
         Raises
         ------
         ParameterError
-            There is none of this name.
+            No bundled profile has this name.
         """
         return cls(None, name)
 
     @classmethod
     def bundled_names(cls) -> list[str]:
-        """The names of those that come with the package."""
+        """The names of the bundled profiles."""
         return _frixel.bundled_profiles(cls.kind)
 
     @classmethod
@@ -75,7 +75,7 @@ class _Profile:
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any]) -> Self:
-        """Make it from the fields of its file.
+        """Make a profile from the fields of its file.
 
         Raises
         ------
@@ -90,7 +90,7 @@ class _Profile:
         if isinstance(profile, str):
             if profile.endswith(".toml"):
                 raise ParameterError(
-                    f"{shown(profile)}: a text is the name of a bundled {cls.kind}: {cls.__name__}.load reads a file"
+                    f"{shown(profile)}: a text is the name of a bundled {cls.kind}; {cls.__name__}.load reads a file"
                 )
             return cls.bundled(profile)
         if isinstance(profile, Mapping):
@@ -101,7 +101,7 @@ class _Profile:
 
 
 class Finger(_Profile):
-    """A finger's numbers on a screen, and what they rest on; `docs/design/scene-reference.md` has all fields.
+    """A finger's parameters on a screen, and their origin; `docs/design/scene-reference.md` has all fields.
 
     ======================== ============================================== ====
     field                    meaning                                        unit
@@ -131,12 +131,12 @@ class Screen(_Profile):
 
 
 class TouchSource(_Profile):
-    """How often, how late and how reliably a touchscreen reports the finger (`docs/design/touch.md`)."""
+    """Rate, latency and reliability of a touchscreen's reports of the finger (`docs/design/touch.md`)."""
 
     kind = "touch source"
 
     @classmethod
     def of(cls, profile: Self | str | int | Mapping[str, Any]) -> Self:
-        """One as arguments name it: itself, the name of a bundled one ("500" or 500), or the fields of its file."""
+        """Convert an argument to a touch source: itself, a bundled name ("500" or 500), or the fields of its file."""
         is_number = isinstance(profile, int) and not isinstance(profile, bool)
         return super().of(shown(profile) if is_number else profile)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""What a play recorded: columns of equal length."""
+"""Recordings of plays: columns of equal length."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ COLUMNS: Mapping[str, tuple[str, str]] = {name: (unit, meaning) for name, unit, 
 class Recording(Mapping[str, NDArray[Any]]):
     """Columns of equal length, by name: `recording["felt_n"]`.
 
-    `COLUMNS` has the unit and the meaning of each. Unknown numbers are not-a-number; `flags` are texts. The arrays are
-    read-only: a change in place would be another play's. Two recordings are equal if they have the same columns, bit
-    for bit, of the same scene.
+    `COLUMNS` has the unit and the meaning of each. Unknown numbers are NaN; `flags` are texts. The arrays are
+    read-only, since plays may share them. Two recordings are equal if they have the same columns, bit for bit, of the
+    same scene.
     """
 
     columns: dict[str, NDArray[Any]]
     """The columns, each of shape (rows,)."""
     settings: dict[str, Any]
-    """How the play was made, and by which version."""
+    """Settings of the play, and the version that made it."""
     scene: Scene
     """The scene that was played."""
     made: str = field(repr=False)
-    """What `frixel replay` needs beside the scene, JSON."""
+    """What `frixel replay` needs in addition to the scene, as JSON."""
 
     def __post_init__(self) -> None:
         columns = {}
@@ -74,9 +74,9 @@ class Recording(Mapping[str, NDArray[Any]]):
         Raises
         ------
         PlayError
-            The file cannot be read, or is no recording of a play.
+            The file cannot be read, or is not a recording of a play.
         SceneError
-            Its scene cannot be compiled: it is of another version, or a picture was too large for the file.
+            Its scene cannot be compiled: it has another version, or a picture was too large for the file.
         """
         content = read_bytes(path, "this recording", PlayError)
         columns, text, files, profiles, made, is_cut_off = _frixel.read_parquet(content, name_of(path))
@@ -134,7 +134,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         return len(self.columns["t_s"])
 
     def to_pandas(self) -> pd.DataFrame:
-        """A `pandas.DataFrame` with a column each; `attrs` has what made the recording."""
+        """A `pandas.DataFrame` with the columns; its `attrs` have the settings."""
         frame: pd.DataFrame = _installed("pandas").DataFrame(dict(self.columns))
         frame.attrs.update(self.settings)
         return frame
@@ -149,24 +149,24 @@ class Recording(Mapping[str, NDArray[Any]]):
     def to_parquet(self, path: str | PathLike[str], *, participant: str | None = None, overwrite: bool = False) -> None:
         """Write the columns as Parquet, in the format of `frixel play --record` (`docs/design/outputs.md`).
 
-        All that made the play is in the metadata of the file, so that `frixel replay` plays it again: the scene with
-        its files, finger, screen, touch source, stroke, seeds, rate and versions.
+        The metadata of the file has everything that `frixel replay` needs to play it again: the scene with its files,
+        finger, screen, touch source, stroke, seeds, rate and versions.
 
         Parameters
         ----------
         path
-            The file. An earlier one stays until the disk has the whole new one.
+            The file. An earlier file stays until the new one is complete on the disk.
         participant
             The code of a person, 1 to 32 letters, digits, `-`, `_` and `.`.
         overwrite
-            Replace a recording of a person, too.
+            Also replace a recording of a person.
 
         Raises
         ------
         FrixelError
-            The file cannot be written, or is a recording of a person, by its content; it is as before.
+            The file cannot be written, or has a recording of a person; it is unchanged.
         ParameterError
-            The participant is no code.
+            The participant's code is invalid.
         """
         path, overwrite = checked_path("path", path), flag("overwrite", overwrite)
         _frixel.write_files({path: self._parquet(participant)}, overwrite)
@@ -206,11 +206,12 @@ def replay(path: str | PathLike[str]) -> int:
     Returns
     -------
     int
-        The number of rows, which are the same.
+        The number of rows, all of which are equal.
 
     Raises
     ------
     PlayError
-        The bits differ, and where; or why it cannot be played again: it is of a board at a port, or of another version.
+        The bits differ, or the recording cannot be played again: it is from a board at a port, or of another version.
+        The message says where, or why.
     """
     return _frixel.replay(read_bytes(path, "this recording", PlayError), name_of(path))

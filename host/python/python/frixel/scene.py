@@ -1,4 +1,4 @@
-"""Scenes: what is felt where on a screen."""
+"""Scenes: the friction of a screen."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Scene:
-        """Read a scene file, and the pictures and profiles that it names, from its folder.
+        """Read a scene file, with the pictures and profiles that it names from its folder.
 
         Raises
         ------
         SceneError
-            The file cannot be read, or it has mistakes: all of them, each with line and column.
+            The file cannot be read, or has mistakes; each is listed with line and column.
         """
         text = read_bytes(path, "this scene file", SceneError, is_toml=True)
         return cls(text, name_of(path), folder=str(Path(path).parent))
@@ -79,7 +79,7 @@ class Scene:
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, files: Mapping[str, bytes] | None = None) -> Scene:
-        """Make a scene from the tables of its file; `version` is 1 unless it is given.
+        """Make a scene from the tables of its file. The default `version` is 1.
 
         Raises
         ------
@@ -102,19 +102,19 @@ class Scene:
         return scene
 
     def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:
-        """The scene for another finger: one, the name of a bundled one, or the fields of its file.
+        """The scene for another finger: a `Finger`, the name of a bundled finger, or the fields of its file.
 
         Raises
         ------
         SceneError
-            Its fields have mistakes, or the scene has mistakes for it.
+            The fields have mistakes, or the scene has mistakes for this finger.
         ParameterError
-            No bundled one has this name.
+            No bundled finger has this name.
         """
         return self._for(Finger.of(finger), self._screen)
 
     def with_screen(self, screen: Screen | str | Mapping[str, Any]) -> Scene:
-        """The scene on another screen: one, the name of a bundled one, or the fields of its file.
+        """The scene on another screen: a `Screen`, the name of a bundled screen, or the fields of its file.
 
         Raises
         ------
@@ -128,7 +128,7 @@ class Scene:
 
     @property
     def is_for_another(self) -> bool:
-        """Whether its finger or screen is another than the text's, by `with_finger` or `with_screen`."""
+        """Whether `with_finger` or `with_screen` has replaced the finger or the screen of the text."""
         return self._finger is not None or self._screen is not None
 
     @property
@@ -148,36 +148,36 @@ class Scene:
 
     @property
     def reach_n(self) -> tuple[float, float]:
-        """Friction of the finger that the drive can reach, N: without voltage, and at the largest voltage."""
+        """Friction that the drive can reach on the finger, N: without voltage, and at the largest voltage."""
         return self.compiled.reach_n
 
     @property
     def refusals(self) -> list[str]:
-        """Why a board refuses the scene, a sentence each. The simulator plays it as a draft, clamped."""
+        """Reasons for which a board refuses the scene, one sentence each; the simulator plays it as a draft."""
         return self.compiled.refusals
 
     def _warn_of_draft(self) -> None:
-        """Say that the simulated board plays the scene as a draft, if a board refuses it."""
+        """Warn that the simulated board plays the scene as a draft, if a board refuses it."""
         if self.refusals:
             message = f"a board refuses {self.name}, which is played as a draft, clamped: {'; '.join(self.refusals)}"
             warnings.warn(message, FrixelWarning, stacklevel=3)
 
     @property
     def notes(self) -> list[str]:
-        """Reasons to doubt the scene, and what was rounded or clamped, a sentence each."""
+        """Reasons to doubt the scene, and what was rounded or clamped, one sentence each."""
         return self.compiled.notes
 
     def check(
         self, *, touch: TouchSource | str | int | Mapping[str, Any] = "100", board: bool = False
     ) -> dict[str, Any]:
-        """What the scene costs and what a finger will feel of it, as `frixel check --json` prints it.
+        """The costs of the scene and what a finger will feel of it, as `frixel check --json` prints them.
 
         Parameters
         ----------
         touch
-            The touch source: one, the name of a bundled one, or the fields of its file.
+            The touch source: a `TouchSource`, the name of a bundled one, or the fields of its file.
         board
-            Also the smallest firmware image that plays the scene.
+            Also report the smallest firmware image that plays the scene.
 
         Raises
         ------
@@ -206,7 +206,7 @@ class Scene:
         Raises
         ------
         ParameterError
-            A value is not taken.
+            A value is out of range.
         """
         return self.compiled.map(
             whole("width", width, 1, MAP_MAX_PX),

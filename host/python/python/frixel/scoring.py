@@ -1,4 +1,4 @@
-"""How faithfully simulated fingers feel a scene, and what they notice of it."""
+"""Scores: how faithfully simulated fingers feel a scene, and what they notice of it."""
 
 from __future__ import annotations
 
@@ -19,35 +19,35 @@ __all__ = ["Score", "score"]
 
 @dataclass(frozen=True)
 class Score:
-    """A verdict on simulated fingers; people were not asked."""
+    """The score of a scene under simulated fingers, not people."""
 
     summary: dict[str, Any]
-    """All that `frixel score --json` prints."""
+    """The output of `frixel score --json`."""
     words: str
-    """The table that `frixel score` prints; `print` shows it."""
+    """The table that `frixel score` prints."""
     files: dict[str, str]
-    """The tables `score.csv`, a row for each play, and `score-layers.csv`, a row for each layer, by these names."""
+    """The tables `score.csv`, one row per play, and `score-layers.csv`, one row per layer, by these names."""
 
     @property
     def verdict(self) -> str:
-        """Which layers the simulated fingers notice, and which levels they tell apart: a sentence."""
+        """The layers that the simulated fingers notice, and the levels that they tell apart, in a sentence."""
         return str(self.summary["verdict"])
 
     @property
     def layers(self) -> list[dict[str, Any]]:
-        """A row for each layer, as in `score-layers.csv`: `pandas.DataFrame(score.layers)` is a table of them."""
+        """One row per layer, as in `score-layers.csv`; `pandas.DataFrame(score.layers)` makes a table of them."""
         return _tables.rows(self.files["score-layers.csv"])
 
     @property
     def plays(self) -> list[dict[str, Any]]:
-        """A row for each play, as in `score.csv`."""
+        """One row per play, as in `score.csv`."""
         return _tables.rows(self.files["score.csv"])
 
     @property
     def numbers(self) -> dict[str, dict[str, Any]]:
-        """Each number over all plays, by its name: `mean`, `interval` of 95 % or `None`, `unit`, `title`, `goal`.
+        """Each metric over all plays, by its name: `mean`, `interval` of 95 % or `None`, `unit`, `title`, `goal`.
 
-        One that exists in no play, such as the correlation of flat friction, is not there.
+        A metric without a value in any play, such as the correlation of flat friction, is absent.
         """
         return {row["key"]: row for row in self.summary["metrics"]}
 
@@ -89,41 +89,41 @@ def score(
     ideal: bool = False,
     jobs: int | None = None,
 ) -> Score:
-    """Play a scene under simulated fingers, and say how faithfully they feel it, as `frixel score` does.
+    """Play a scene under simulated fingers, and measure how faithfully they feel it, as `frixel score` does.
 
     Parameters
     ----------
     scene
         A scene, or the tables of its file.
     finger, screen
-        Those that the scene is compiled for, in place of its own.
+        Finger and screen that the scene is compiled for, in place of its own.
     people
-        Number of simulated people, from 1 to 1000, drawn from an assumed population, whom the board does not know; each
-        makes strokes of their own. Without it, the finger is the scene's.
+        Number of simulated people, from 1 to 1000, drawn from an assumed population; each makes their own strokes.
+        The board computes for the scene's finger. Default: the scene's finger only.
     stroke
         `human`, `human-rough` (with the accelerations of recorded strokes before smoothing), `sweep`, or one stroke for
         all.
     strokes
-        Number of human strokes, of each person. Without it 4.
+        Number of human strokes, per person. Default: 4.
     seeds
-        Repetitions of each stroke, with other loads, noise and lost reports. Without it 2.
+        Repetitions of each stroke, with other loads, noise and lost reports. Default: 2.
     seconds
-        Duration of a stroke that is generated, s: at most 600 s of a human stroke, and a day of `sweep`. Without it 3.
+        Duration of a generated stroke, s: at most 600 s for a human stroke, and a day for `sweep`. Default: 3.
     median_speed_mm_per_s
-        Median speed of human strokes, from 1 to 1000 mm/s; without it, each person has their own.
+        Median speed of human strokes, from 1 to 1000 mm/s. Default: each person has their own.
     touch
-        The touch source; without it, 100 reports a second, 10 ms late.
+        The touch source. Default: 100 reports a second, 10 ms late.
     ideal
         A world without noise, load changes, losses and offsets.
     jobs
-        Plays side by side; without it, as many as there are processors. The result is the same for any number.
+        Number of plays in parallel; the result does not depend on it. Default: one per processor.
 
     Raises
     ------
     SceneError
         The scene has mistakes, or a board refuses it.
     ParameterError
-        A value is not taken.
+        A value is not accepted.
     KeyboardInterrupt
         Ctrl-C, at once.
 

@@ -20,38 +20,38 @@ __all__ = ["Simulator", "run"]
 
 
 class Simulator:
-    """A simulated board with a finger on its screen. The same settings give the same bits, on every machine.
+    """A simulated board with a finger on its screen. The same settings give the same bits on every machine.
 
     Parameters
     ----------
     scene
-        What is felt where: a scene, or the tables of its file.
+        The scene, or the tables of its file.
     finger
-        The finger that the scene is compiled for, in place of the scene's own: one, the name of a bundled one, or the
-        fields of its file.
+        The finger that the scene is compiled for, in place of the scene's own: a `Finger`, the name of a bundled
+        finger, or the fields of its file.
     screen
         The screen, in place of the scene's own.
     stroke
-        Where the finger goes. Without it, a sweep over the screen that then visits each layer that it missed.
+        The finger's path. Default: a sweep over the screen that then visits each layer that it missed.
     seed
         Seed of the world's noise, from 0.
     person
-        Seed of a simulated person, whose finger the board does not know; without it, the finger is the scene's.
+        Seed of a simulated person, for whom the scene is not compiled. Default: the scene's finger.
     touch
-        How the touchscreen reports the finger; without it, 100 reports a second, 10 ms late.
+        The touch source. Default: 100 reports a second, 10 ms late.
     ideal
         A world without load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     leakage
         Whether charge leaks through the skin below 250 Hz; measurements disagree (`docs/inside/evidence.md`).
     rows_per_s
-        Rows of the recording a second; divides 40,000.
+        Rows of the recording per second, a divisor of 40,000.
 
     Raises
     ------
     SceneError
         The scene, the finger, the screen or the touch source has mistakes.
     ParameterError
-        A value is not taken, or no bundled profile has this name.
+        A value is not accepted, or no bundled profile has this name.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Simulator:
         Parameters
         ----------
         seconds
-            Duration, s; without it, as long as the stroke.
+            Duration, s. Default: that of the stroke.
 
         Returns
         -------
@@ -99,9 +99,9 @@ class Simulator:
         Raises
         ------
         ParameterError
-            The stroke, the duration or the rate is not taken.
+            The stroke, the duration or the rate is not accepted.
         PlayError
-            The simulated board does not take the scene, or stopped.
+            The simulated board refuses the scene, or stopped.
         KeyboardInterrupt
             Ctrl-C, at once.
 

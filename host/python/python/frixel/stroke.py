@@ -1,4 +1,4 @@
-"""Where the simulated finger goes."""
+"""The path of the simulated finger."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Stroke:
         speed_mm_s: float = 100.0,
         minimum_jerk: bool = False,
     ) -> Stroke:
-        """From one place straight to another.
+        """A straight stroke from one place to another.
 
         Parameters
         ----------
@@ -45,41 +45,41 @@ class Stroke:
         Raises
         ------
         ParameterError
-            A value is not taken.
+            A value is not accepted.
         """
         speed = positive("speed_mm_s", speed_mm_s)
         return _Straight(_place("from_mm", from_mm), _place("to_mm", to_mm), speed, flag("minimum_jerk", minimum_jerk))
 
     @staticmethod
     def human(seed: int, *, seconds: float | None = None, rough: bool = False) -> Stroke:
-        """The touches of a person, others for every seed.
+        """The touches of a person, different for every seed.
 
         Parameters
         ----------
         seed
             Seed of the person's motion, from 0.
         seconds
-            Duration, s, above 0; without it, that of the play, or else 10 s.
+            Duration, s, above 0. Default: that of the play, or else 10 s.
         rough
-            With the accelerations of recorded strokes before smoothing, 2 to 5 times as much.
+            With the accelerations of recorded strokes before smoothing, which are 2 to 5 times as large.
 
         Raises
         ------
         ParameterError
-            A value is not taken.
+            A value is not accepted.
         """
         lasts_s = None if seconds is None else positive("seconds", seconds)
         return _Human(whole("seed", seed, 0), lasts_s, flag("rough", rough))
 
     @staticmethod
     def from_arrays(t_s: ArrayLike, x_mm: ArrayLike, y_mm: ArrayLike, load_n: ArrayLike | None = None) -> Stroke:
-        """Through places at times, straight and at constant speed between them.
+        """A stroke through places at times, straight and at constant speed between them.
 
         Parameters
         ----------
         t_s
-            Times, s, from 0 and rising; shape (n,), at least 2. The finger is off the screen until the first one; one
-            above 10 s is of another clock, and is the start.
+            Times, s, from 0 and rising; shape (n,), at least 2. The finger is off the screen until the first time. A
+            first time above 10 s counts as another clock's, and becomes 0.
         x_mm, y_mm
             Places, mm, shape (n,); NaN in both while the finger is off the screen.
         load_n
@@ -88,8 +88,8 @@ class Stroke:
         Raises
         ------
         ParameterError
-            The arrays are not of one length, times do not rise, or a place or a load is none of a finger. Messages
-            name the element.
+            The arrays differ in length, times do not rise, or a place or a load is out of range. Messages name the
+            element.
         """
         given = {"t_s": t_s, "x_mm": x_mm, "y_mm": y_mm, **({} if load_n is None else {"load_n": load_n})}
         columns = {name: array(name, values) for name, values in given.items()}

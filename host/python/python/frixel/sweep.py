@@ -1,7 +1,7 @@
-"""Studies of many simulated fingers, in pieces that processes and clusters can share.
+"""Studies of many simulated fingers, in cells that processes and clusters can share.
 
-`cells` makes the pieces of a plan, `play` plays one of them, and a `Study` puts the results together. `play` is a pure
-function of a text, so that `map(sweep.play, cells)` works with processes, Dask and Slurm (`docs/python/scale.md`).
+`cells` makes the cells of a plan, `play` plays one of them, and a `Study` merges the results. `play` is a pure function
+of a text, so that `map(sweep.play, cells)` works with processes, Dask and Slurm (`docs/python/scale.md`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["Study", "cells", "play"]
 
 
 def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
-    """The cells of a plan, one for each simulated finger and combination, people last.
+    """The cells of a plan: one for each combination and simulated person, people varying fastest.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
     Returns
     -------
     list of str
-        Texts that hold all that the plays need. Their order is that of the plan.
+        Texts with everything that the plays need, in the order of the plan.
 
     Raises
     ------
     ParameterError
-        The plan has a mistake, or names a file that is not there, or a scene is for another finger or screen.
+        The plan has a mistake, or names a missing file, or a scene was given another finger or screen.
     SceneError
         A scene has mistakes, or a board refuses it with some of the values.
 
@@ -58,7 +58,7 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
             if scene.is_for_another:
                 raise ParameterError(
                     f"the scene {name} is for another finger or screen (with_finger, with_screen), and people have "
-                    "their own fingers: give the scene as it is, and a screen by `screens`"
+                    "their own fingers: give the scene as it is, and screens in `screens`"
                 )
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
         return _frixel.sweep_cells(text, "<plan>", "", sources)
@@ -71,71 +71,71 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
 
 
 def play(cell: str) -> str:
-    """Play one cell: what its finger noticed, as a text. The same cell gives the same text on every machine.
+    """Play one cell. Returns what its finger noticed, as a text: the same on every machine.
 
     Raises
     ------
     ParameterError
-        It is no cell, or one of another version.
+        The text is not a cell, or a cell of another version.
     """
     if not isinstance(cell, str):
-        raise refusal("a cell", "a text that `sweep.cells` has made", cell)
+        raise refusal("a cell", "a text made by `sweep.cells`", cell)
     return _frixel.play_cell(checked_text("a cell", cell))
 
 
 class Study:
-    """The results of the cells of a plan together, in the order of the plan.
+    """The merged results of a plan's cells, in the order of the plan.
 
-    Intervals are computed from the results of single fingers. A notebook shows the picture: which share of the
-    simulated fingers notices what.
+    Intervals are computed from the results of single fingers. A notebook shows the chart of the share of simulated
+    fingers that notice each layer.
 
     Raises
     ------
     ParameterError
-        A text is no result.
+        A text is not a result.
     """
 
     def __init__(self, results: Iterable[str]) -> None:
         texts = list(each("results", results))
         if not texts or not all(isinstance(text, str) for text in texts):
-            raise ParameterError("a study is of one result or more, texts that `sweep.play` has made")
+            raise ParameterError("a study needs one result or more, texts made by `sweep.play`")
         lines, self.files = _frixel.study_files(texts)
         self.words = "\n".join(lines)
 
     files: dict[str, bytes]
     """The files that `frixel sweep` writes, byte for byte: `layers.csv`, `sweep.svg` and others, by their names."""
     words: str
-    """The share of the fingers that notice each layer; `print` shows it."""
+    """The share of the fingers that notice each layer, as a text."""
 
     @property
     def layers(self) -> list[dict[str, Any]]:
-        """A row for each combination and layer: the share of the fingers that notice it, with its interval."""
+        """One row per combination and layer: the share of the fingers that notice it, with its interval."""
         return self._rows("layers.csv")
 
     @property
     def fingers(self) -> list[dict[str, Any]]:
-        """A row for each finger and layer."""
+        """One row per finger and layer."""
         return self._rows("fingers.csv")
 
     @property
     def numbers(self) -> list[dict[str, Any]]:
-        """A row for each combination and number of a score: its mean over the fingers, with its interval."""
+        """One row per combination and metric of a score: its mean over the fingers, with its interval."""
         return self._rows("numbers.csv")
 
     def write(self, folder: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the files into a folder, which is made if it is not there.
+        """Write the files into a folder. Creates the folder if necessary.
 
         Parameters
         ----------
         folder
-            Where to write. If it has another study, nothing is written.
+            The folder. If it has another study, nothing is written.
         overwrite
-            Replace another study that is there.
+            Replace another study in the folder.
 
         Raises
         ------
         FrixelError
-            A file cannot be written, and those of before are as they were; or the folder has another study.
+            A file cannot be written, and the earlier files are unchanged; or the folder has another study.
         """
         folder, overwrite = checked_path("folder", folder), flag("overwrite", overwrite)
         files = {folder / name: content for name, content in self.files.items()}

@@ -1,4 +1,4 @@
-"""A scene to slide over in a notebook; needs `anywidget`, which `pip install frixel[widget]` adds."""
+"""A scene to slide over in a notebook. Needs `anywidget`, which `pip install frixel[widget]` adds."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ except ModuleNotFoundError as error:
 __all__ = ["SceneWidget"]
 
 MODULE = Path(__file__).with_name("widget.js")
-"""The script of `<frixel-scene>` with a view of anywidget, which `cargo xtask studio` makes."""
+"""The script of `<frixel-scene>` with a view for anywidget, built by `cargo xtask studio`."""
 
 
 class _Argument(traitlets.TraitType[Any, Any]):
-    """A trait that takes what arguments name: `of` makes it of that, as it does for functions."""
+    """A trait whose value is converted by `of`, like an argument of a function."""
 
     def __init__(self, of: Callable[[Any], Any]) -> None:
         super().__init__()
@@ -43,20 +43,23 @@ class SceneWidget(AnyWidget):
     Parameters
     ----------
     scene
-        The scene, with the finger and the screen that it has been given, or its tables.
+        The scene, with its finger and screen, or the tables of its file.
     touch
-        The touch source: one, the name of a bundled one, or the fields of its file.
+        The touch source: a `TouchSource`, the name of a bundled one, or the fields of its file.
 
     Attributes
     ----------
     scene, touch
-        What is shown. The page shows what is assigned to them.
+        The shown scene and touch source. Assigning to them updates the page.
 
     Raises
     ------
     FrixelError
-        The package has been built without the widget's script; `ParameterError` for what is no scene or touch source,
-        `SceneError` for mistakes in their tables.
+        The package was built without the widget's script.
+    ParameterError
+        An argument is not a scene or a touch source.
+    SceneError
+        The tables of an argument have mistakes.
     """
 
     _esm = traitlets.Unicode().tag(sync=True)
@@ -80,7 +83,7 @@ def _script() -> str:
 
 
 def _sent_scene(scene: Scene) -> dict[str, Any]:
-    """What `host/studio/web/element/widget.js` takes of a scene."""
+    """The fields of a scene that `host/studio/web/element/widget.js` takes."""
     return {
         "text": scene.text,
         "files": scene.compiled.files,
@@ -90,5 +93,5 @@ def _sent_scene(scene: Scene) -> dict[str, Any]:
 
 
 def _sent_profile(profile: Finger | Screen | TouchSource | None) -> str | None:
-    """The name of a bundled profile, or the text of another."""
+    """The name of a bundled profile, or the text of any other."""
     return None if profile is None else profile.text or profile.name

@@ -1,4 +1,4 @@
-//! The thread that has the board: it opens it, and carries out one request after another.
+//! The thread that owns the board: opens it, and carries out one request after another.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -42,9 +42,9 @@ pub(super) enum Request {
     Subscribe {
         period_ticks: u32,
     },
-    /// Lets so much time pass on the board.
+    /// Lets this much time pass on the board.
     Listen(Duration),
-    /// Requests a report alone.
+    /// Requests a report only.
     Look,
     Stop,
 }
@@ -56,14 +56,14 @@ pub(super) struct Report {
     pub(super) now: Duration,
     /// Whether samples of a stream are still to be played.
     pub(super) is_streaming: bool,
-    /// What a person should know of the request.
+    /// Notes on the request.
     pub(super) sentences: Vec<String>,
     pub(super) telemetry: Vec<Telemetry>,
 }
 
 /// Why a request was not carried out.
 pub(super) enum Trouble {
-    /// Python's program was interrupted; the board is disarmed.
+    /// The Python program was interrupted; the board is disarmed.
     Signal(PyErr),
     /// A value was rejected; the board continues as before.
     Parameter(String),
@@ -75,26 +75,26 @@ impl From<PlayError> for Trouble {
     fn from(error: PlayError) -> Self {
         match error {
             PlayError::Live(error) => Self::Parameter(live_sentence(error)),
-            PlayError::NothingPlays => Self::Play("no scene plays: play one first, by `play(scene)`".into()),
+            PlayError::NothingPlays => Self::Play("no scene plays: play one first with `play(scene)`".into()),
             error => Self::Play(error.to_string()),
         }
     }
 }
 
-/// The sentence of an error whose cure is a call in Python, and a word in the command.
+/// The sentence of an error, with advice that names a call in Python in place of a control line.
 fn live_sentence(error: LiveError) -> String {
     match error {
         LiveError::TriggerOn { layer } => format!(
-            "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by \
+            "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first with \
              `set_layer({layer:?}, on=False)`"
         ),
         LiveError::TriggerSilent { layer } => format!(
-            "layer {layer:?} has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
+            "layer {layer:?} has a gain of 0, so a trigger would play nothing: set its gain first with \
              `set_layer({layer:?}, gain=1)`"
         ),
         LiveError::TriggerUnfed { layer } => format!(
-            "layer {layer:?} plays what is streamed, and nothing is, so that a trigger plays nothing: stream samples \
-             first, by `stream(samples, sample_hz)`"
+            "layer {layer:?} plays a stream, and there is none, so a trigger would play nothing: stream samples first \
+             with `stream(samples, sample_hz)`"
         ),
         error => error.to_string(),
     }
@@ -104,7 +104,7 @@ fn failed(error: impl std::error::Error) -> Trouble {
     Trouble::Play(error.to_string())
 }
 
-/// Whether Python's program was interrupted.
+/// Whether the Python program was interrupted.
 #[derive(Clone, Default)]
 pub(super) struct Interrupted(Arc<AtomicBool>);
 
@@ -122,7 +122,7 @@ impl Interrupted {
     }
 }
 
-/// The two ends of the line to the program.
+/// The thread's ends of the channels to the program.
 type Ends<'a> = (&'a Receiver<Request>, &'a Sender<Result<Report, Trouble>>);
 
 /// Opens the board at a port, and serves requests until the program releases it.
@@ -141,12 +141,12 @@ pub(super) fn run(
         real(port, arm, opened, ends, interrupted)
     };
     if let Err(trouble) = served {
-        // There is no receiver if the program has ended meanwhile.
+        // There is no receiver if the program has ended.
         let _ = opened.send(Err(trouble));
     }
 }
 
-/// The simulated board, in virtual time, under a realistic finger that repeats its stroke.
+/// Serves the simulated board, in virtual time, under a realistic finger that repeats its stroke.
 fn simulated(
     opened: &Sender<Result<Hello, Trouble>>,
     ends: Ends<'_>,
@@ -180,7 +180,7 @@ fn real(
     Ok(())
 }
 
-/// Carries out requests until the program has let go of the board, and disarms it then.
+/// Carries out requests until the program releases the board, then disarms it.
 fn serve<L: Link>(
     mut device: Device<Observed<L>>,
     opened: &Sender<Result<Hello, Trouble>>,
@@ -206,7 +206,7 @@ fn carry_out<L: Link>(
     interrupted: &Interrupted,
 ) -> Result<Vec<String>, PlayError> {
     if !matches!(request, Request::Stop | Request::Play(_)) {
-        // Handles the messages that the board has sent meanwhile: it may have stopped.
+        // Handles the messages that the board has sent: it may have stopped.
         player.device_mut().keep_alive()?;
         match player.step(Duration::ZERO) {
             Err(PlayError::Stopped(_)) if matches!(request, Request::Look) => {}
