@@ -13,7 +13,7 @@ def main() -> None:
     """Play the same stroke under each finger."""
     stroke = frixel.Stroke.straight((10, 40), (110, 40), minimum_jerk=True)
     cells = [{"scene": {"layer": [GRATING]}, "stroke": stroke, "person": person} for person in range(4)]
-    # Each process imports the module anew, as on every system and on clusters.
+    # With "spawn", each process imports the module itself, on every system and on clusters.
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         for cell, recording in zip(cells, pool.map(frixel.run, cells), strict=True):
             least, most = np.nanpercentile(recording["felt_n"], [5, 95])

@@ -42,7 +42,7 @@ def test_the_threshold_of_a_simulated_observer_is_found(method: str, tmp_path: P
     scene = Scene.from_dict({"layer": [{"kind": "constant", "friction_fraction": 0.5}]})
     assert scene.with_finger(finger).reach_n == scene.with_finger("example").reach_n
     again = ran(tmp_path / "s", "--observer", 7, "--method", method)
-    assert "is there already" in again.stdout
+    assert "already exists" in again.stdout
     assert Finger.load(tmp_path / "s/finger.toml") == finger
 
 
@@ -98,7 +98,7 @@ def test_help_and_noise(tmp_path: Path) -> None:
     assert ran("--noise", tmp_path / "noise.wav", "unused").returncode == 0
     with wave.open(str(tmp_path / "noise.wav")) as noise:
         assert noise.getnframes() == 60 * noise.getframerate()
-    assert "is there already" in ran("--noise", tmp_path / "noise.wav", "unused").stderr
+    assert "already exists" in ran("--noise", tmp_path / "noise.wav", "unused").stderr
     assert "cannot be written" in ran("--noise", tmp_path / "nowhere" / "noise.wav", "unused").stderr
 
 

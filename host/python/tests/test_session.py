@@ -155,8 +155,8 @@ def test_breaks_come_between_trials_and_not_while_answers_are_read_again(tmp_pat
     ("change", "reason"),
     [
         (lambda row: {}, "number is None"),
-        (lambda row: [row], "it is no object"),
-        (lambda row: {**row, "number": 0}, "number is 0, and 1 comes here"),
+        (lambda row: [row], "it is not an object"),
+        (lambda row: {**row, "number": 0}, "number is 0, expected 1"),
         (lambda row: {**row, "run": None}, "run is None"),
         (lambda row: {**row, "correct": 1}, "correct is 1"),
         (lambda row: {**row, "plays": [{"recording": "../../secret.parquet"}]}, "the recording of a play is '../../"),
@@ -171,7 +171,7 @@ def test_a_line_that_is_no_trial_is_said_and_the_rest_is_kept(
     lines = path.read_text().splitlines()
     lines[1] = json.dumps(change(json.loads(lines[1])))
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(ExperimentError, match=re.escape(f"line 2 of trials.jsonl is no trial ({reason}")) as raised:
+    with pytest.raises(ExperimentError, match=re.escape(f"line 2 of trials.jsonl is not a trial ({reason}")) as raised:
         opened(tmp_path)
     assert "take the file from a copy, or cut it before this line" in str(raised.value)
     path.write_text(lines[0] + "\n")
@@ -348,7 +348,7 @@ def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device, seconds=0.1, seed=3)
         session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
-        with pytest.raises(ExperimentError, match="no trial runs, with which this play could be kept"):
+        with pytest.raises(ExperimentError, match="no trial runs to which this play could belong"):
             session.play(plates(0.1), stroke=STROKE)
         assert session.rows[0]["plays"] == []
         with pytest.raises(ExperimentError, match="played nothing through its session"):

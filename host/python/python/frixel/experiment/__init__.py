@@ -1,13 +1,13 @@
 """Experiments with people or simulated observers: choose levels, record answers, and estimate thresholds.
 
 A *method* (:class:`ConstantStimuli`, :class:`UpDown`, :class:`QuestPlus`) chooses the level of each trial. A *task*
-(:data:`TWO_ALTERNATIVES`, :data:`SAME_DIFFERENT`) says what a person who feels nothing answers. :func:`estimate` fits
-one psychometric function to the answers, by whatever method they were gathered, and refuses to name a threshold for
-somebody who guesses. :class:`Session` presents the trials, records what it plays, and keeps every answer on the disk
-before the next one. ``python -m frixel.experiment`` finds what a person just feels, at the terminal.
+(:data:`TWO_ALTERNATIVES`, :data:`SAME_DIFFERENT`) has the guess rate: the share of correct answers from a person who
+feels nothing. :func:`estimate` fits one psychometric function to the answers, whatever the method, and gives no
+threshold for a person who guesses. :class:`Session` presents the trials, records its plays, and writes every answer to
+the disk before the next trial. ``python -m frixel.experiment`` finds a detection threshold at the terminal.
 
-A level is a number from 0 in any one unit, such as volts; of :class:`Observer` it is a relative difference of friction,
-so that 0.2 is 20 % more than the standard.
+A level is a number from 0 in any one unit, such as volts. For :class:`Observer`, it is a relative difference of
+friction: 0.2 is 20 % more than the standard.
 """
 
 from ._detection import perceptual_finger

@@ -1,8 +1,9 @@
-"""Find what a person just feels, without a force sensor: python -m frixel.experiment FOLDER --port PATH.
+"""Find a person's detection threshold without a force sensor: python -m frixel.experiment FOLDER --port PATH.
 
-In each trial a finger makes two strokes, of which one is rough, and the person types which. The folder keeps every
-answer: the same command goes on with a session that was cut off. At the end, finger.toml in it is the finger's profile,
-with the threshold in volts. Nobody knows how many newtons that is: write scenes in fractions of what can be reached.
+In each trial a finger makes two strokes, one of which is rough, and the person types which. The folder keeps every
+answer: the same command resumes a session that was cut off. At the end, finger.toml in the folder is the finger's
+profile, with the threshold in volts. The threshold in newtons stays unknown: write scenes in fractions of what can be
+reached.
 """
 
 from __future__ import annotations
@@ -34,20 +35,20 @@ from ._session import Session, Trial
 ARROWS = 8
 """Arrows that show the pace of a stroke."""
 POLL_S = 0.05
-"""Longest time without a word to the board while an answer is awaited, s."""
+"""Longest time between calls to the board while an answer is awaited, s."""
 WRONG_MAX = 10
-"""Answers in a row that are neither 1 nor 2, after which the trials end."""
+"""Number of consecutive answers that are neither 1 nor 2 after which the trials end."""
 CHECKS_MAX = 30
-"""Most trials at the largest level after the others, which tell feeling from guessing."""
+"""Largest number of checks: trials at the largest level after the others, which tell feeling from guessing."""
 GUESSED = 1e-3
-"""Evidence at which these end, because the person guesses."""
+"""Evidence below which the checks end, because the person guesses."""
 NOISE_S, NOISE_HZ = 60, 44_100
 
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = argparse.ArgumentParser("python -m frixel.experiment", description=__doc__)
-    made.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the session, a new one for each person")
+    made.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the session, one per person")
     made.add_argument("--port", help="serial port of the board, or `sim` for the simulated one")
     made.add_argument("--observer", type=int, metavar="SEED", help="let a simulated observer answer, without a board")
     made.add_argument("--participant", default="person", metavar="CODE", help="a code of the person, not a name")
@@ -80,9 +81,9 @@ class Board:
         self._device.close()
 
     def play(self, trial: Trial) -> None:
-        """The two strokes of a trial, and their pace: an arrow for each part of the way."""
+        """Play the two strokes of a trial, and print their pace: an arrow for each part of a stroke."""
         if not self._is_playing:
-            say("  Slide 7 cm to the right while arrows to the right appear, then back with those to the left.")
+            say("  Slide 7 cm to the right while arrows to the right appear, then back with the arrows to the left.")
             say("  Type 1 or 2 and Enter: which of the two strokes was rougher? Guess if you are not sure.")
             self._device.play(self._scene)
             self._is_playing = True
@@ -97,7 +98,7 @@ class Board:
         self._device.wait(detection.FADE_S)
 
     def answer(self, trial: Trial) -> int:
-        """The number that the person types, less one."""
+        """The number that the person types, minus one."""
         for _ in range(WRONG_MAX):
             say(" 1 or 2? ", end="")
             line = self._line()
@@ -112,11 +113,11 @@ class Board:
             try:
                 return self._lines.get(timeout=POLL_S)
             except queue.Empty:
-                # A board whose host is silent disarms itself.
+                # A board disarms itself if its host is silent.
                 self._device.wait(POLL_S)
 
     def _read(self) -> None:
-        # Of a long line, 4,096 characters count.
+        # Only the first 4,096 characters of a line are kept.
         while line := sys.stdin.readline(4096):
             while not line.endswith("\n") and (rest := sys.stdin.readline(4096)):
                 line = line if not rest.endswith("\n") else line + "\n"
@@ -132,7 +133,7 @@ def observer_of(seed: int) -> Observer:
 
 
 def method_of(name: str, trials: int) -> Method:
-    """The method by its name."""
+    """The method of this name."""
     if name == "quest":
         return QuestPlus(detection.LEVELS, TWO_ALTERNATIVES, trials=trials, grid=detection.GRID)
     return UpDown(0.3, trials=trials, step=1.4, largest=1.0)
@@ -141,7 +142,7 @@ def method_of(name: str, trials: int) -> Method:
 def ask(
     session: Session, method: Method, play: Callable[[Trial], object], answer: Callable[[Trial], int]
 ) -> tuple[Answers, Estimate]:
-    """All trials, and then checks at the largest level: as many as tell feeling from guessing."""
+    """Run all trials, and then checks at the largest level until they tell feeling from guessing."""
     session.run(method, play, answer)
     for check in range(CHECKS_MAX + 1):
         answers = Answers((row["level"], row["correct"]) for row in session.rows)
@@ -168,7 +169,7 @@ def experiment(arguments: argparse.Namespace) -> None:
         if observer is None:
             board = Board(arguments.port, highest, arguments.arm)
             stack.callback(board.close)
-        # It counts trials from 0, and a person from 1.
+        # The log counts trials from 0, and this command from 1.
         logging.getLogger("frixel.experiment").setLevel(logging.ERROR)
         session = stack.enter_context(
             Session(
@@ -180,7 +181,7 @@ def experiment(arguments: argparse.Namespace) -> None:
             )
         )
         if session.rows:
-            say(f"  goes on after trial {len(session.rows)}, which was the last one with an answer")
+            say(f"  goes on after trial {len(session.rows)}, the last one with an answer")
 
         def play(trial: Trial) -> None:
             if board is not None:
@@ -215,7 +216,7 @@ def experiment(arguments: argparse.Namespace) -> None:
     )
     path = arguments.folder / "finger.toml"
     if path.exists():
-        say(f"  is there already {path}")
+        say(f"  already exists   {path}")
         return
     assert finger.text is not None
     write(path, finger.text.encode(), "the profile")
@@ -223,10 +224,10 @@ def experiment(arguments: argparse.Namespace) -> None:
 
 
 def write_noise(path: Path, seed: int) -> None:
-    """White noise at a quarter of full scale, which masks what an electrode sounds like."""
+    """Write white noise at a quarter of full scale, which masks the sound of an electrode."""
     noise = np.random.default_rng(seed).integers(-(2**13), 2**13, NOISE_S * NOISE_HZ, dtype=np.int16)
     if path.exists():
-        raise ExperimentError(f"{path} is there already: give another name")
+        raise ExperimentError(f"{path} already exists: give another name")
     content = io.BytesIO()
     with wave.open(content, "wb") as written:
         written.setnchannels(1)
@@ -238,7 +239,7 @@ def write_noise(path: Path, seed: int) -> None:
 
 
 def say(text: str, end: str = "\n") -> None:
-    """Print at once."""
+    """Print without buffering."""
     print(text, end=end, flush=True)
 
 

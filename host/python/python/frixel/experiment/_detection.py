@@ -1,8 +1,8 @@
-"""What a detection experiment plays, and the finger profile that its threshold gives.
+"""The stimulus of a detection experiment, and the finger profile from its threshold.
 
-In each trial the finger makes two strokes, one with the stimulus: friction that swings at 160 Hz, near which fingers
-feel best (Vardar 2016, doi:10.1007/978-3-319-42321-0_18). A level is the amplitude of its electric friction, as a share
-of the largest. How many newtons that is on a person's finger is not known, so the result is a voltage.
+In each trial the finger makes two strokes, one with the stimulus: friction that oscillates at 160 Hz, near which
+fingers are most sensitive (Vardar 2016, doi:10.1007/978-3-319-42321-0_18). A level is the amplitude of its electric
+friction, as a share of the largest. The newtons on a person's finger are unknown, so the result is a voltage.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ FADE_S = 0.2
 """Fade of the stimulus at either end of a stroke, s, so that no click gives it away."""
 SAMPLE_HZ = 4000
 REACH = 0.999
-"""Part of the highest voltage's friction that is asked for, so that rounding stays within reach."""
+"""Part of the friction at the highest voltage that the scene uses, so that rounding stays within reach."""
 GAP_UM = 10.0
 EXAMPLE = _frixel.EXAMPLE_FINGER
-"""The numbers of the bundled finger `example`, which a perceptual profile keeps."""
+"""The parameters of the bundled finger `example`, which a perceptual profile keeps."""
 NORMAL_LOAD_N = EXAMPLE["normal_load_n"]
 CONTACT = model.Contact(
     radius_m=1e-3 * EXAMPLE["radius_mm"],
@@ -42,7 +42,7 @@ CONTACT = model.Contact(
 """Finger for which the board computes voltages. Any finger will do, because only the voltages count."""
 LEVELS = [float(level) for level in np.geomspace(1e-3, 1.0, 31)]
 GRID = Grid(np.geomspace(2e-4, 2.0, 93), np.geomspace(0.8, 5.0, 7), np.array([0.0, 0.01, 0.03]))
-"""Answers are a function of friction's amplitude with a slope of about 3.5 (Watson and Pelli 1983), or less."""
+"""Slopes go up to 5: over the amplitude of friction, a slope is about 3.5 (Watson and Pelli 1983), or less."""
 
 
 def scene(voltage_v_rms: float) -> Scene:
@@ -59,7 +59,7 @@ def scene(voltage_v_rms: float) -> Scene:
 
 
 def samples(level: float) -> Array:
-    """A stroke with the stimulus, at `SAMPLE_HZ`, for the stream of `scene`; at level 0 one without."""
+    """Samples of a stroke with the stimulus, at `SAMPLE_HZ`, for the stream of `scene`; at level 0 without it."""
     time_s = np.arange(round(STROKE_S * SAMPLE_HZ)) / SAMPLE_HZ
     fade = np.minimum(np.minimum(time_s, STROKE_S - time_s) / FADE_S, 1.0)
     return np.asarray(level * fade * (0.5 - 0.5 * np.cos(2 * math.pi * STIMULUS_HZ * time_s)), dtype=np.float64)
@@ -85,14 +85,14 @@ def perceptual_finger(
     screen: str = "example",
     date: datetime.date | None = None,
 ) -> Finger:
-    """The profile of a finger whose detection threshold is known, and no force (`docs/design/scenes.md`, `[finger]`).
+    """The profile of a finger from its detection threshold, without forces (`docs/design/scenes.md`, `[finger]`).
 
     Parameters
     ----------
     threshold_v_rms, interval_v_rms
         Rms voltage at the threshold, and its 95 % interval, V.
     method, screen, date
-        How, on which screen, and when it was found; the day is today unless it is given.
+        How, on which screen, and when the threshold was found. Default date: today.
 
     >>> perceptual_finger(22, (19, 26), method="QUEST+, 60 trials").text.splitlines()[5]
     'origin = "perceptual"'

@@ -1,4 +1,4 @@
-"""Estimates from answers: a threshold with its interval, or that they are no better than guessing."""
+"""Estimates from answers: a threshold with its interval, or none if the answers are no better than guessing."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from ..errors import ParameterError
 from ._psychometric import STEP, Array, Grid, Task, checked_grid, checked_level, checked_task
 
 EVIDENCE_MIN = 1000.0
-"""Least likelihood ratio to guessing: at most one in 1,000 who guess has more, whatever the method, and however often
-one looks (Ville's inequality)."""
+"""Least likelihood ratio to guessing. At most one guesser in 1,000 exceeds it, whatever the method, and however often
+the ratio is evaluated (Ville's inequality)."""
 RANGE_MAX = 1e6
-"""Thresholds of a grid that the levels choose have the weight that they have among those of six decades: so Ville's
-inequality holds, too, where answers choose the levels, and with them the grid."""
+"""Ratio of the largest to the smallest threshold of a prior over six decades. A grid that depends on the levels gets
+the weight of its thresholds in this prior, so that Ville's inequality also holds where answers choose the levels."""
 
 
 class Answers:
-    """Correct answers at each level. The order of the trials does not matter to an estimate."""
+    """Numbers of correct answers at each level. Estimates do not depend on the order of the trials."""
 
     def __init__(self, trials: Iterable[tuple[float, bool | np.bool_]] = ()) -> None:
         self._counts: dict[float, tuple[int, int]] = {}
@@ -51,7 +51,7 @@ class Answers:
 
     @property
     def table(self) -> list[tuple[float, int, int]]:
-        """Rows of (level, correct, total) by level: the data that ``psignifit`` takes."""
+        """Rows of (level, correct, total) in order of level, as ``psignifit`` takes them."""
         return [(level, *self._counts[level]) for level in sorted(self._counts)]
 
     def write_csv(self, file: TextIO) -> None:
@@ -66,18 +66,18 @@ class Answers:
         """Logarithm of the likelihood for each combination of the grid's parameters, as :meth:`Grid.correct`."""
         total = np.zeros_like(checked_grid(grid).correct(0.0, task))
         for level, right, count in self.table:
-            # Where a share is 0 or 1, an answer that it excludes has no likelihood.
+            # Keeps the logarithms finite where a share is 0 or 1.
             share = np.clip(grid.correct(level, task), 1e-12, 1.0 - 1e-12)
             total += right * np.log(share) + (count - right) * np.log1p(-share)
         return np.asarray(total, dtype=np.float64)
 
     def log_likelihood_of_guessing(self, task: Task) -> float:
-        """Logarithm of the largest likelihood of one and the same guess rate at every level."""
+        """Logarithm of the largest likelihood of a guess rate that is the same at every level."""
         rows = self.table
         right, total = sum(row[1] for row in rows), len(self)
         rates = np.asarray(checked_task(task).guess_rates)
         if not task.is_guess_rate_known:
-            # Of one who says "different" whatever was presented, any share can come.
+            # A person who says "different" whatever is presented can have any share.
             rates = np.array([right / total]) if total else rates
         rates = np.clip(rates, 1e-12, 1.0 - 1e-12)
         return float(np.max(right * np.log(rates) + (total - right) * np.log1p(-rates)))
@@ -85,7 +85,7 @@ class Answers:
 
 @dataclass(frozen=True)
 class Estimate:
-    """What answers say of a person: a threshold in the unit of the levels, if they are plainly better than guessing.
+    """The result of answers: a threshold in the unit of the levels, if they are clearly better than guessing.
 
     Attributes
     ----------
@@ -93,14 +93,14 @@ class Estimate:
         Level at which the person, without lapses, is 1 - 1/e of the way from guessing to always right: median of the
         posterior. ``None`` for answers that are no better than guessing.
     interval
-        95 % interval of the threshold: it holds 95 % of the posterior, and each side beyond it 2.5 %.
+        95 % interval of the threshold, with 2.5 % of the posterior on either side.
     evidence
-        How many times as likely the answers are of somebody who notices, averaged over the grid, as of a guesser;
-        below 1000 there is no threshold.
+        Likelihood of the answers for a person who notices, averaged over the grid, relative to a guesser. Below 1000,
+        there is no threshold.
     trials
         Number of trials.
     is_bounded
-        Whether the interval lies within the levels that were presented. Where it does not, it rests on the shape of the
+        Whether the interval lies within the levels that were presented. If not, it depends on the shape of the
         psychometric function, and more extreme levels are needed.
     """
 
@@ -113,8 +113,8 @@ class Estimate:
     def __str__(self) -> str:
         if self.threshold is None or self.interval is None:
             return (
-                f"no better than guessing: {self.trials} trials are {self.evidence:.2g} times as likely of somebody "
-                f"who notices, and {EVIDENCE_MIN:.0f} times is needed"
+                f"no better than guessing: the evidence of {self.trials} trials against guessing is "
+                f"{self.evidence:.2g}, and {EVIDENCE_MIN:.0f} is needed"
             )
         low, high = self.interval
         more = "" if self.is_bounded else "; it reaches beyond the levels that were presented: present others"
@@ -122,10 +122,9 @@ class Estimate:
 
 
 def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate:
-    """The threshold that answers show, in the unit of their levels.
+    """Estimate the threshold from answers, in the unit of their levels.
 
-    The thresholds that are considered go from a tenth of the smallest level to ten times the largest one, or are those
-    of ``grid``.
+    Thresholds are sought from a tenth of the smallest level to ten times the largest, or among those of ``grid``.
 
     >>> from frixel.experiment import TWO_ALTERNATIVES, Answers, estimate
     >>> trials = [(0.4, True)] * 30 + [(0.1, True)] * 24 + [(0.1, False)] * 6
@@ -134,7 +133,7 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
     >>> 0.05 < found.interval[0] < found.threshold < found.interval[1] < 0.3
     True
     >>> print(estimate(Answers([(0.4, True)] * 15 + [(0.4, False)] * 15), TWO_ALTERNATIVES))
-    no better than guessing: 30 trials are 0.097 times as likely of somebody who notices, and 1000 times is needed
+    no better than guessing: the evidence of 30 trials against guessing is 0.097, and 1000 is needed
     """
     if not isinstance(answers, Answers):
         raise refusal("answers", "an Answers", answers)
@@ -146,7 +145,7 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
     log_likelihood = answers.log_likelihood(task, grid)
     most = float(log_likelihood.max())
     log_average = most + math.log(weight * float(np.exp(log_likelihood - most).mean()))
-    # A number beyond this is no plainer.
+    # Avoids an overflow; more evidence than this changes nothing.
     evidence = math.exp(min(log_average - answers.log_likelihood_of_guessing(task), 700.0))
     if evidence < EVIDENCE_MIN:
         return Estimate(None, None, evidence, len(answers), False)
@@ -158,7 +157,7 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
 
 
 def quantiles(thresholds: Array, posterior: Array, parts: Iterable[float]) -> list[float]:
-    """Quantiles of a density over the logarithm of the thresholds, between whose points it is a straight line."""
+    """Quantiles of a density over the logarithm of the thresholds, piecewise linear between its points."""
     places = np.log(thresholds)
     density = posterior / posterior.max()
     areas = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(places))))
@@ -168,15 +167,15 @@ def quantiles(thresholds: Array, posterior: Array, parts: Iterable[float]) -> li
 def magnitude_exponent(levels: ArrayLike, ratings: ArrayLike, *, seed: int = 0) -> tuple[float, tuple[float, float]]:
     """Exponent of a magnitude estimation, and its 95 % interval: the slope of ln(rating) over ln(level).
 
-    ``levels`` and ``ratings`` are above zero and of one length; the interval is the bootstrap's over trials, 2,000
-    draws by ``seed`` (Stevens 1957, doi:10.1037/h0046162).
+    ``levels`` and ``ratings`` are above zero and of equal length. The interval is from a bootstrap over trials with
+    2,000 draws, seeded by ``seed`` (Stevens 1957, doi:10.1037/h0046162).
     """
     x, y = array("levels", levels), array("ratings", ratings)
     if x.shape != y.shape or x.ndim != 1 or not (np.isfinite([x, y]).all() and (np.stack([x, y]) > 0.0).all()):
         raise ParameterError("levels and ratings are two lists of one length of numbers above zero")
     x, y = np.log(x), np.log(y)
     if np.unique(x).size < 3:
-        raise ParameterError(f"an exponent needs three levels or more, and here are {np.unique(x).size}")
+        raise ParameterError(f"an exponent needs three levels or more, found {np.unique(x).size}")
 
     def slope(index: np.ndarray) -> float:
         centred = x[index] - x[index].mean()

@@ -1,4 +1,4 @@
-"""The folder of a session: what is on the disk survives a kill, a full disk and a power cut."""
+"""The folder of a session, which survives a kill, a full disk and a power cut."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _RECORDING = re.compile(RECORDINGS + r"/[0-9a-f]{64}\.parquet")
 
 
 class ExperimentError(FrixelError):
-    """Why a session cannot begin or go on, and what to do."""
+    """An error that prevents a session from beginning or going on, with what to do."""
 
 
 class Folder:
     """`manifest.json`, `trials.jsonl` with a line for each answered trial, and `recordings`.
 
-    Everything is written in an order that a kill at any moment leaves whole: a recording, the manifest that names it,
-    the line of the trial that has it.
+    A recording is written first, then the manifest that names it, then the line of its trial: a kill at any moment
+    leaves the folder consistent.
     """
 
     def __init__(self, path: Path, manifest: dict[str, Any]) -> None:
@@ -41,7 +41,7 @@ class Folder:
                 path.mkdir(parents=True, exist_ok=True)
                 _sync_folder(path.parent)
         except OSError as error:
-            raise ExperimentError(f"the folder {path} cannot be made ({error.strerror}): give another one") from error
+            raise ExperimentError(f"the folder {path} cannot be made ({error.strerror}): give another") from error
         self._lock = _locked(path / ".lock")
         try:
             self._manifest = self._begun(manifest)
@@ -87,7 +87,7 @@ class Folder:
         return name
 
     def recording(self, name: str) -> bytes:
-        """The bytes of a recording, which are those that were written."""
+        """The bytes of a recording, checked against its SHA-256."""
         try:
             content = read_bytes(self._path / name, "this recording", ExperimentError)
         except ExperimentError as error:
@@ -98,9 +98,9 @@ class Folder:
         return content
 
     def append(self, row: dict[str, Any]) -> None:
-        """Adds a line, and waits until the disk has it. A line that does not fit is cut off again.
+        """Adds a line, and waits until it is on the disk. Removes a line that does not fit.
 
-        If an interrupt comes when the line is written, it is a row like the others.
+        A line that was complete before an interrupt counts as a row.
         """
         self.check_open()
         path = self._path / "trials.jsonl"
@@ -115,7 +115,7 @@ class Folder:
             if before is None:
                 _sync_folder(self._path)
         except OSError as error:
-            # What cannot be cut off now is cut off when the folder is opened.
+            # If the part of a line cannot be removed now, opening the folder removes it.
             with suppress(OSError):
                 os.truncate(path, before or 0)
             answer = f"the answer of trial {row['number']}"
@@ -132,7 +132,7 @@ class Folder:
             raise ExperimentError("this session is closed: open it again, and it goes on")
 
     def _begun(self, manifest: dict[str, Any]) -> dict[str, Any]:
-        """The manifest of the folder, which agrees with this one; a new one if there is none."""
+        """The manifest of the folder, checked against this one; a new one if the folder has none."""
         path = self._path / "manifest.json"
         if not path.exists():
             begun = {**manifest, RECORDINGS: {}}
@@ -141,7 +141,7 @@ class Folder:
         try:
             earlier = json.loads(read_bytes(path, "the manifest", ExperimentError))
         except ValueError as error:
-            raise ExperimentError(f"{path.name} is no manifest ({error}): give another folder") from error
+            raise ExperimentError(f"{path.name} is not a manifest ({error}): give another folder") from error
         for name, value in manifest.items():
             found = earlier.get(name) if isinstance(earlier, dict) else None
             if found != value:
@@ -157,9 +157,9 @@ class Folder:
 
 
 def write(path: Path, content: bytes, what: str, *, overwrite: bool = False) -> None:
-    """Writes a file, `what` in messages, that has its name once the disk has all of it.
+    """Writes a file under a temporary name and renames it when complete. `what` is its name in messages.
 
-    It replaces a recording of a person only with `overwrite`.
+    Replaces a recording of a person only with `overwrite`.
     """
     try:
         _frixel.write_files({path: content}, overwrite)
@@ -181,7 +181,7 @@ def _unwritable(what: str, error: Exception) -> ExperimentError:
 
 
 def _sync_folder(path: Path) -> None:
-    """Waits until the disk has the names in a folder."""
+    """Waits until the names in a folder are on the disk."""
     if os.name == "posix":
         folder = os.open(path, os.O_RDONLY)
         try:
@@ -191,7 +191,7 @@ def _sync_folder(path: Path) -> None:
 
 
 def _rows(path: Path) -> list[dict[str, Any]]:
-    """The whole lines of a file. What a crash has left of a line is cut off."""
+    """The whole lines of a file. Removes the part of a line that a crash has left."""
     if not path.exists():
         return []
     content = read_bytes(path, "the file of the trials", ExperimentError)
@@ -212,18 +212,18 @@ def _rows(path: Path) -> list[dict[str, Any]]:
 
 
 def _mistake(row: object, number: int) -> str | None:
-    """What is wrong with the row of a trial; nothing if it is as it was written."""
+    """The mistake in the row of a trial; `None` if it is valid."""
     if not isinstance(row, dict):
-        return "it is no object"
+        return "it is not an object"
     kinds = {"number": int, "run": int, "response": int, "correct": bool, "plays": list}
     for name, kind in kinds.items():
         if type(row.get(name)) is not kind:
             return f"{name} is {row.get(name)!r}"
     if row["number"] != number:
-        return f"number is {row['number']}, and {number} comes here"
+        return f"number is {row['number']}, expected {number}"
     for play in row["plays"]:
         recording = play.get("recording") if isinstance(play, dict) else None
-        # The name of a file that the session has written, and no other place on the disk.
+        # Only the name of a file that a session writes, not any other path.
         if not (isinstance(recording, str) and _RECORDING.fullmatch(recording)):
             return f"the recording of a play is {recording!r}"
     return None
@@ -231,13 +231,13 @@ def _mistake(row: object, number: int) -> str | None:
 
 def _no_trial(path: Path, number: int, reason: str) -> ExperimentError:
     return ExperimentError(
-        f"line {number + 1} of {path.name} is no trial ({reason}): take the file from a copy, or cut it before this "
+        f"line {number + 1} of {path.name} is not a trial ({reason}): take the file from a copy, or cut it before this "
         "line, and the session goes on there"
     )
 
 
 def _locked(path: Path) -> BinaryIO:
-    """A file that one process at a time has locked, until `_unlock` or its end."""
+    """A file that this process has locked exclusively, until `_unlock` or its end."""
     taken = ExperimentError("another process writes into this folder: wait for its end, or give another one")
     try:
         file = path.open("ab")

@@ -1,4 +1,4 @@
-"""Methods: which level comes next."""
+"""Methods that choose the level of each trial."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .._arguments import array, flag, number, refusal, whole
 from ._psychometric import LEVEL_MAX, LEVEL_MIN, Array, Grid, Task, checked_grid, checked_level, checked_task
 
 TRIALS_MAX = 1_000_000
-"""Most trials of a method."""
+"""Largest number of trials of a method."""
 LEVELS_MAX = 1000
-"""Most levels of a method."""
+"""Largest number of levels of a method."""
 
 
 class Method(Protocol):
@@ -27,7 +27,7 @@ class Method(Protocol):
 
 
 class ConstantStimuli:
-    """Presents each level equally often: every level once in each round, in an order drawn by seed."""
+    """Presents each level equally often: once per round, in a random order by seed."""
 
     def __init__(self, levels: ArrayLike, repetitions: int, *, seed: int = 0) -> None:
         one_round = _levels(levels)
@@ -47,11 +47,11 @@ class ConstantStimuli:
 
 
 class UpDown:
-    """A transformed staircase: one wrong answer makes the next level larger, ``down`` right ones in a row smaller.
+    """A transformed staircase: a wrong answer raises the next level, ``down`` right answers in a row lower it.
 
-    With ``down=2`` levels gather at 70.7 % correct, with 3 at 79.4 % (Levitt 1971, doi:10.1121/1.1912375). ``step`` is
-    the factor from level to level; it is squared until the first reversal. The staircase ends after ``trials``, and
-    stays between ``least``, a 400th of ``start`` unless it is given, and ``largest``, four times ``start``.
+    With ``down=2`` levels converge to 70.7 % correct, with 3 to 79.4 % (Levitt 1971, doi:10.1121/1.1912375). ``step``
+    is the factor from level to level; it is squared until the first reversal. The staircase ends after ``trials``, and
+    stays between ``least``, by default a 400th of ``start``, and ``largest``, by default four times ``start``.
     """
 
     def __init__(
@@ -96,10 +96,10 @@ class UpDown:
 
 
 class QuestPlus:
-    """The level of which the answer is expected to leave the least entropy (Watson 2017, doi:10.1167/17.3.10).
+    """Chooses the level whose answer minimises the expected entropy (Watson 2017, doi:10.1167/17.3.10).
 
-    ``levels`` are those that can be presented, at most some tens. Ties are broken by the order of ``levels``. Without
-    ``grid``, thresholds are sought from a tenth of the smallest level to ten times the largest one.
+    ``levels`` can be presented, some tens at most. Ties are broken by the order of ``levels``. Without ``grid``,
+    thresholds are sought from a tenth of the smallest level to ten times the largest.
     """
 
     def __init__(self, levels: ArrayLike, task: Task, *, trials: int, grid: Grid | None = None) -> None:
@@ -108,7 +108,7 @@ class QuestPlus:
         self._left = whole("trials", trials, 1, TRIALS_MAX)
         self._correct = np.stack([self._grid.correct(level, task).ravel() for level in self._levels])
         self._wrong = 1.0 - self._correct
-        # What the entropy of an answer takes, which is the same for every trial.
+        # Terms of the entropy of an answer that are the same for every trial.
         self._correct_log = _times_log(self._correct)
         self._wrong_log = _times_log(self._wrong)
         self._posterior = np.full(self._correct.shape[1], 1.0 / self._correct.shape[1])
@@ -125,9 +125,9 @@ class QuestPlus:
         return self._levels[int(np.argmax(self.expected_information()))]
 
     def expected_information(self) -> Array:
-        """What an answer at each level is expected to say of the parameters, in nats.
+        """Expected information of an answer at each level about the parameters, in nats.
 
-        The entropy that is left is that of the parameters, less this: the information between answer and parameters.
+        This is the mutual information of answer and parameters: the expected reduction of the parameters' entropy.
         """
         right = self._correct @ self._posterior
         answer_entropy = -(_times_log(right) + _times_log(1.0 - right))
@@ -137,7 +137,7 @@ class QuestPlus:
     def answer(self, level: float, correct: bool) -> None:
         """Takes the answer to a trial at one of the levels."""
         if level not in self._levels:
-            raise refusal("level", "one of those that the method was given", level)
+            raise refusal("level", "one of the method's levels", level)
         given = self._correct if flag("correct", correct) else self._wrong
         self._posterior = self._posterior * given[self._levels.index(level)]
         self._posterior /= self._posterior.sum()

@@ -1,4 +1,4 @@
-"""A simulated observer, whose threshold is known."""
+"""A simulated observer with a known threshold."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ class Observer:
     """Compares the logarithms of two frictions, each with internal noise, and lapses.
 
     ``noise`` is the standard deviation of one felt ln(friction), ``lapse`` the share of trials that are answered
-    without attention, ``criterion`` the difference of ln(friction), in units of its noise, from which the observer says
-    "different". An observer of infinite noise guesses.
+    without attention, ``criterion`` the difference of ln(friction), in units of its noise, from which the observer
+    answers "different". An observer with infinite noise guesses.
 
-    The noise of each answer follows the one before. Of a session that may be resumed, give the number of the ``trial``:
-    its noise is then the same, whatever was answered before.
+    By default, the noise of an answer depends on the number of answers before it. In a session that may be resumed,
+    give the number of the ``trial``: its noise then depends on that number only.
     """
 
     def __init__(self, noise: float, *, lapse: float = 0.02, criterion: float = 1.5, seed: int = 0) -> None:
@@ -32,7 +32,7 @@ class Observer:
         self._rng = np.random.default_rng(self._seed)
 
     def stronger(self, first_n: float, second_n: float, *, trial: int | None = None) -> int:
-        """Which of two felt frictions, in any one unit, the observer calls the stronger one: 0 or 1."""
+        """Index, 0 or 1, of the friction that the observer calls stronger, of two in any one unit."""
         frictions = [number(name, value, 1e-300) for name, value in (("first_n", first_n), ("second_n", second_n))]
         rng = self._noise_of(trial)
         if rng.random() < self._lapse:
@@ -64,13 +64,13 @@ class Observer:
         return normal.cdf(signal)
 
     def threshold(self, task: Task) -> float:
-        """The level that is 1 - 1/e of the way from guessing to always right: what an estimate should find."""
+        """The level that is 1 - 1/e of the way from guessing to always right, which an estimate should find."""
         guess = self._share(0.0, checked_task(task))
-        wanted = guess + (1.0 - guess) * -math.expm1(-1.0)
+        target = guess + (1.0 - guess) * -math.expm1(-1.0)
         low, high = 0.0, 200.0
         for _ in range(200):
             middle = 0.5 * (low + high)
-            low, high = (middle, high) if self._share(middle, task) < wanted else (low, middle)
+            low, high = (middle, high) if self._share(middle, task) < target else (low, middle)
         difference = middle * math.sqrt(2.0) * self._noise
-        # Beyond this, the level is no number any more.
+        # Beyond this, the level would overflow.
         return math.expm1(difference) if difference < 700.0 else math.inf

@@ -14,22 +14,22 @@ from .._arguments import array, each, number, refusal, text
 Array = NDArray[np.float64]
 
 LEVEL_MIN = 1e-100
-"""Smallest level beside 0, in any unit."""
+"""Smallest level above 0, in any unit."""
 LEVEL_MAX = 1e100
 """Largest level, in any unit."""
 BEYOND_LEVELS = 10.0
-"""A threshold is sought from the smallest level over this to the largest one times this."""
+"""Factor by which the sought thresholds extend beyond the smallest and the largest level."""
 STEP = 0.09
 """Step of ln(threshold)."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What a person is asked, and what one who feels nothing answers."""
+    """The question of a trial, with its guess rate."""
 
     name: str
     guess_rates: tuple[float, ...]
-    """Shares of "correct" at level 0: one where the design fixes it, or those that are possible, each as likely."""
+    """Shares of "correct" at level 0: one share if the design fixes it, or all possible ones, equally likely."""
 
     def __post_init__(self) -> None:
         text("name", self.name)
@@ -40,15 +40,15 @@ class Task:
 
     @property
     def is_guess_rate_known(self) -> bool:
-        """Whether the design fixes the guess rate. Where it does not, trials at level 0 are needed."""
+        """Whether the design fixes the guess rate. If not, trials at level 0 are needed."""
         return len(self.guess_rates) == 1
 
 
 TWO_ALTERNATIVES = Task("2afc", (0.5,))
-"""Two presentations, of which the person names the stronger one."""
+"""Two presentations; the person names the stronger one."""
 
 SAME_DIFFERENT = Task("same-different", (0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5))
-"""Two presentations; "different" counts as correct, also at level 0, where its share is the false alarms."""
+"""Two presentations; "different" counts as correct, also at level 0, where its share is the false-alarm rate."""
 
 
 def checked_level(level: object) -> float:
@@ -97,10 +97,10 @@ def _lapses() -> Array:
 
 @dataclass(frozen=True)
 class Grid:
-    """The parameters that an estimate considers, each combination as likely as any other before the first answer.
+    """The parameters of an estimate, with a uniform prior over their combinations.
 
-    Thresholds are levels, in the unit of the levels. The answers of an observer whose sensitivity is in proportion to
-    the difference have a slope of 1.3; the default is 0.8 to 3, with lapses up to 3 %.
+    Thresholds are in the unit of the levels. An observer whose sensitivity is proportional to the difference has a
+    slope of 1.3; the default is 0.8 to 3, with lapses up to 3 %.
     """
 
     thresholds: Array
@@ -122,7 +122,7 @@ class Grid:
 
     @classmethod
     def around(cls, levels: Iterable[float]) -> Grid:
-        """The grid for these levels: thresholds from a tenth of the smallest one above 0 to ten times the largest."""
+        """The grid for these levels: thresholds from a tenth of the smallest above 0 to ten times the largest."""
         felt = [found for found in (checked_level(level) for level in each("levels", levels)) if found > 0.0] or [1.0]
         least, most = min(felt) / BEYOND_LEVELS, max(felt) * BEYOND_LEVELS
         return cls(np.geomspace(least, most, math.ceil(math.log(most / least) / STEP) + 1))

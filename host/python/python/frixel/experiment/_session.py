@@ -1,4 +1,4 @@
-"""A session with one participant: trials are presented, and every answer is on the disk before the next trial."""
+"""A session with one participant, in which every answer is on the disk before the next trial."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from ._psychometric import Task, checked_level, checked_task
 
 FORMAT = 1
 KEPT_MAX_BYTES = 256 << 20
-"""Most bytes of the simulator's recordings that wait for the same play in the same run."""
+"""Largest number of bytes of simulated recordings that are kept for the same play in the same run."""
 _LOG = logging.getLogger("frixel.experiment")
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial, as ``play`` and ``answer`` get it."""
+    """One trial, the argument of ``play`` and ``answer``."""
 
     number: int
     """From 0, through the whole session."""
@@ -42,16 +42,16 @@ class Trial:
     level: float
     """Level of the stronger presentation; 0 for a catch trial."""
     target: int
-    """Which presentation is the stronger one: 0 or 1, by seed."""
+    """Index of the stronger presentation: 0 or 1, by seed."""
     is_practice: bool
-    """Whether the answer counts for nothing."""
+    """Whether the trial is practice: its answer does not count."""
     is_catch: bool
-    """Whether the trial is a catch trial, which no method asked for."""
+    """Whether the trial is a catch trial, in addition to the method's trials."""
 
 
 @dataclass
 class _Kept:
-    """A recording, and its file in the folder once it is there."""
+    """A recording, and its file in the folder once written."""
 
     recording: Recording
     name: str | None = None
@@ -64,14 +64,14 @@ class _Kept:
 
 @dataclass(frozen=True)
 class _Play:
-    """A play of the trial that runs."""
+    """A play of the current trial."""
 
     kept: _Kept
     began_s: float
     ended_s: float
 
     def row(self) -> dict[str, Any]:
-        """The play as the row of its trial has it."""
+        """The play as a part of its trial's row."""
         recording = self.kept.recording
         row = {
             "recording": self.kept.name,
@@ -85,19 +85,19 @@ class _Play:
 class Session:
     """The answers of one participant in a folder: a manifest, a line for each trial, and the recordings of all plays.
 
-    A session is resumed in a folder that has trials already, if the manifest is the same: no answered trial is
-    repeated, and at most the one that ran is lost. ``participant`` is a code of letters, digits, ``-``, ``_`` and
+    In a folder that has trials already, the session is resumed if the manifest is the same: no answered trial is
+    repeated, and at most the running trial is lost. ``participant`` is a code of letters, digits, ``-``, ``_`` and
     ``.``, not a name.
 
-    :meth:`play` plays and records, and the manifest gets the SHA-256 of each recording by itself. ``played`` are texts
-    by names of your choice that must not change between two runs, such as what is played in another way. Their SHA-256
-    stands in the manifest, too, and a folder with others is refused.
+    :meth:`play` plays and records, and adds the SHA-256 of each recording to the manifest. ``played`` has texts by
+    names of your choice that must not change between runs, such as stimuli that are played in another way. The manifest
+    has their SHA-256, and a folder with other texts is refused.
 
-    ``on_marker`` is called with ``"began"``, ``"play"``, ``"presented"`` and ``"answered"`` and the trial, at that
-    moment: for an outlet of Lab Streaming Layer, or a trigger line. ``"play"`` comes before the simulator plays, and as
-    soon as a board says that it plays; ``"answered"`` when the disk has the answer.
+    ``on_marker`` is called with ``"began"``, ``"play"``, ``"presented"`` or ``"answered"``, and the trial, at that
+    moment: for an outlet of Lab Streaming Layer, or a trigger line. ``"play"`` comes just before the simulator plays,
+    or as soon as a board reports that it plays; ``"answered"`` once the answer is on the disk.
 
-    Raises :class:`ExperimentError` for a folder of another session, or one that another process writes into.
+    Raises :class:`ExperimentError` for a folder of another session, or a folder that another process writes into.
     """
 
     def __init__(
@@ -153,8 +153,8 @@ class Session:
         ``played_s``, ``presented_s`` and ``answered_s`` after the beginning of that run, in seconds.
 
         Each of ``plays`` has ``recording``, its file in the folder, ``scene``, the SHA-256 of the scene's text,
-        ``began_s`` and ``ended_s``, and of a board ``board_s``, the board's time of the recording's first row. A play
-        on a board has begun when the board has said so.
+        ``began_s`` and ``ended_s``, and on a board ``board_s``, the board's time of the recording's first row. A play
+        on a board begins when the board reports it.
         """
         return [dict(row) for row in self._folder.rows]
 
@@ -166,24 +166,23 @@ class Session:
         seconds: float | None = None,
         **settings: Any,
     ) -> Recording:
-        """Plays a scene, and keeps its recording with the trial that runs, once that is answered.
+        """Plays a scene in a trial, and keeps its recording once the trial is answered.
 
-        On the simulator, ``settings`` are those of :class:`frixel.Simulator`; of the same ones, the recording of before
-        is returned, as long as it is among the last 256 MiB of this run. With a board, ``on``, it plays for ``seconds``
-        (:meth:`frixel.Device.record`).
+        On the simulator, ``settings`` are those of :class:`frixel.Simulator`. A repeated play with the same settings
+        returns the earlier recording, as long as it is among the last 256 MiB of this run. On a board, ``on``, the
+        scene plays for ``seconds`` (:meth:`frixel.Device.record`).
 
-        Without a trial there is nothing to keep it with: then play by :class:`frixel.Simulator` or
-        :meth:`frixel.Device.record`.
+        Outside of a trial, use :class:`frixel.Simulator` or :meth:`frixel.Device.record`.
         """
         self._folder.check_open()
         if not (on is None or isinstance(on, Device)):
-            raise refusal("`on`", "a board, of Device.open", on)
+            raise refusal("`on`", "a board from Device.open", on)
         if on is not None and (settings or seconds is None):
             raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
         if self._trial_now is None:
             raise ExperimentError(
-                "no trial runs, with which this play could be kept: call it within `play` or `answer` of `run`, or "
-                "play by Simulator or Device.record"
+                "no trial runs to which this play could belong: call it within `play` or `answer` of `run`, or use "
+                "Simulator or Device.record"
             )
         began_s = self._now_s()
 
@@ -204,14 +203,14 @@ class Session:
     def replay(self, number: int) -> int:
         """Plays the plays of a trial again, from their recordings alone, and compares every bit.
 
-        Returns the number of plays, which are the same. Raises :class:`ExperimentError` for a trial without any, and
-        :class:`frixel.PlayError` where a play differs, or was on a board.
+        Returns the number of plays, all of which are equal. Raises :class:`ExperimentError` for a trial without plays,
+        and :class:`frixel.PlayError` if a play differs, or was on a board.
         """
         if whole("number", number, 0) >= len(self._folder.rows):
             raise ExperimentError(f"trial {number} is not answered: there are {len(self._folder.rows)}, from 0")
         plays = self._folder.rows[number]["plays"]
         if not plays:
-            raise ExperimentError(f"trial {number} played nothing through its session: play by `session.play`")
+            raise ExperimentError(f"trial {number} played nothing through its session: play with `session.play`")
         for play in plays:
             _frixel.replay(self._folder.recording(play["recording"]), play["recording"])
         return len(plays)
@@ -228,14 +227,14 @@ class Session:
         break_every: int | None = None,
         on_break: Callable[[int], object] | None = None,
     ) -> Answers:
-        """Presents the trials of a block, and returns its answers, those of an earlier run included.
+        """Presents the trials of a block, and returns its answers, including those of earlier runs.
 
-        ``play`` presents a trial, by :meth:`play`, and returns when the person has felt it. ``answer`` returns the
-        number of the presentation that felt stronger, 0 or 1; where the task is same-different, 1 for "different".
-        ``practice`` are levels of trials before the first one, which count for nothing. After every ``catch_every``
-        trials of the method, a trial at level 0 follows. ``on_break`` is called with the number of trials so far, after
-        every ``break_every``; an exception in it or in ``play`` and ``answer`` ends the run, and the same program goes
-        on there when it opens the session again.
+        ``play`` presents a trial with :meth:`play`, and returns when the person has felt it. ``answer`` returns the
+        index of the presentation that felt stronger, 0 or 1; in a same-different task, 1 for "different". ``practice``
+        has levels of trials before the first one, whose answers do not count. After every ``catch_every`` trials of the
+        method, a trial at level 0 follows. ``on_break`` is called with the number of trials so far, after every
+        ``break_every``. An exception in ``on_break``, ``play`` or ``answer`` ends the run; the same program resumes
+        there when it opens the session again.
         """
         for name, act in {
             "play": play,
@@ -251,7 +250,7 @@ class Session:
         if not (hasattr(method, "next_level") and hasattr(method, "answer")):
             raise refusal("method", "a Method, such as QuestPlus", method)
         if self._is_cut_off:
-            raise ExperimentError("the run before this one was cut off: open the session again, and it goes on there")
+            raise ExperimentError("the previous run was cut off: open the session again, and it goes on there")
         self._is_cut_off = True
         answers = Answers()
         for practised in practised_levels:
@@ -270,7 +269,7 @@ class Session:
         return answers
 
     def estimate(self, answers: Answers) -> Estimate:
-        """What the answers of a block say: see :func:`frixel.experiment.estimate`."""
+        """The estimate from the answers of a block: see :func:`frixel.experiment.estimate`."""
         return estimate(answers, self._task)
 
     def _trial(
@@ -285,7 +284,7 @@ class Session:
     ) -> bool:
         """Presents a trial, or reads its answer if an earlier run had one. Returns whether it is correct."""
         number = self._repeated
-        # By the number alone, so that a resumed session presents what it would have.
+        # By the number alone, so that a resumed session presents the same.
         target = int(np.random.default_rng([self._seed, number]).integers(2))
         trial = Trial(number, block, level, target, is_practice, is_catch)
         self._repeated += 1
@@ -293,7 +292,7 @@ class Session:
             return self._recorded(trial)
         if number > 0 and self._folder.rows[-1]["run"] != self._run:
             _LOG.warning(
-                "the session goes on with trial %d: those before it are answered, and if the run before ended in it, "
+                "the session goes on with trial %d: those before it are answered; if the previous run ended in it, "
                 "that presentation is lost",
                 number,
             )
@@ -318,7 +317,7 @@ class Session:
 
     @contextmanager
     def _presenting(self, trial: Trial) -> Iterator[None]:
-        """The time in which a trial runs. Says what is lost if it is left by an exception."""
+        """The context in which a trial runs. Logs the loss of the trial if an exception ends it."""
         self._trial_now = trial
         try:
             self._mark("began")
@@ -335,8 +334,8 @@ class Session:
             self._trial_now, self._plays = None, []
 
     def _kept_plays(self) -> list[dict[str, Any]]:
-        """The plays of the trial, as its row has them, once the disk has their recordings."""
-        # A play may be there twice.
+        """Write the recordings of the trial's plays, and return the plays for its row."""
+        # The same recording may be in two plays.
         new = list({id(play.kept): play.kept for play in self._plays if play.kept.name is None}.values())
         names = self._folder.keep([kept.recording for kept in new], self._participant)
         for kept, name in zip(new, names, strict=True):
@@ -355,7 +354,7 @@ class Session:
         return bool(row["correct"])
 
     def _simulated(self, simulator: Simulator, seconds: float | None) -> _Kept:
-        """A play of the simulator: that of before, if it is the same."""
+        """A play on the simulator: an earlier one, if it is the same."""
         key = (
             simulator.scene,
             simulator.stroke,
@@ -368,7 +367,7 @@ class Session:
             seconds,
         )
         if key not in self._kept:
-            # The next trial with the same play gets its read-only columns as they are.
+            # Later trials with the same play share its read-only columns.
             recording = simulator.run(seconds)
             kept = self._kept[key] = _Kept(recording)
             size = sum(kept.size for kept in self._kept.values())

@@ -1,4 +1,4 @@
-"""How often stated intervals contain the truth, and how often a guesser gets a threshold.
+"""Coverage of the stated intervals, and the share of guessers who get a threshold.
 
 ``python -m frixel.experiment.coverage`` prints a row for each method and task.
 """
@@ -34,7 +34,7 @@ COARSE = Grid(np.geomspace(0.002, 3.0, 41), np.geomspace(0.8, 3.0, 4), np.array(
 
 
 def run(method: Method, observer: Observer, task: Task) -> Estimate:
-    """Asks an observer by a method, with a catch trial after every fifth trial where the guess rate is unknown."""
+    """Asks an observer by a method, with a catch trial after every fifth trial if the guess rate is unknown."""
     answers = Answers()
     number = 0
     while (level := method.next_level()) is not None:
@@ -48,7 +48,7 @@ def run(method: Method, observer: Observer, task: Task) -> Estimate:
 
 
 def drawn(seed: int) -> Observer:
-    """An observer with a threshold around that of published steps of friction, 11 to 27 %."""
+    """An observer with a threshold around published ones for steps of friction, 11 to 27 %."""
     rng = np.random.default_rng([seed, 7])
     return Observer(float(np.exp(rng.normal(math.log(0.12), 0.4))), lapse=float(rng.uniform(0.0, 0.05)), seed=seed)
 
