@@ -113,8 +113,8 @@ class Estimate:
     def __str__(self) -> str:
         if self.threshold is None or self.interval is None:
             return (
-                f"no better than guessing: the evidence of {self.trials} trials against guessing is "
-                f"{self.evidence:.2g}, and {EVIDENCE_MIN:.0f} is needed"
+                f"no better than guessing: {self.trials} trials are {self.evidence:.2g} times as likely if the person "
+                f"notices, and {EVIDENCE_MIN:.0f} times is needed"
             )
         low, high = self.interval
         more = "" if self.is_bounded else "; it reaches beyond the levels that were presented: present others"
@@ -133,7 +133,7 @@ def estimate(answers: Answers, task: Task, grid: Grid | None = None) -> Estimate
     >>> 0.05 < found.interval[0] < found.threshold < found.interval[1] < 0.3
     True
     >>> print(estimate(Answers([(0.4, True)] * 15 + [(0.4, False)] * 15), TWO_ALTERNATIVES))
-    no better than guessing: the evidence of 30 trials against guessing is 0.097, and 1000 is needed
+    no better than guessing: 30 trials are 0.097 times as likely if the person notices, and 1000 times is needed
     """
     if not isinstance(answers, Answers):
         raise refusal("answers", "an Answers", answers)
