@@ -29,7 +29,7 @@ impl From<PlanError> for Raised {
 }
 
 /// The cells of a plan. `name` is its name in messages. `scenes` has the texts and files of scenes that are not files
-/// in `folder`. An interrupt takes effect between the checks of two combinations.
+/// in `folder`. An interrupt takes effect once the cells are made, between the checks of two combinations.
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,
@@ -82,9 +82,8 @@ fn unreadable(sentence: impl Display) -> Raised {
 /// Plays a cell. Returns its result.
 #[pyfunction]
 pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
-    let no_cell = |error: serde_json::Error| {
-        parameter_error(py, format!("expected a cell made by `sweep.cells`: {error}"))
-    };
+    let no_cell =
+        |error: serde_json::Error| parameter_error(py, format!("expected a cell made by `sweep.cells`: {error}"));
     let cell: Cell = serde_json::from_str(cell).map_err(no_cell)?;
     // Callers play cells in parallel, each on one thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
@@ -101,9 +100,8 @@ pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec
         let study = Study::new(results.collect::<Result<Vec<_>, _>>()?);
         Ok((study.summary(), study.files()))
     });
-    let no_result = |error: CellResultError| {
-        parameter_error(py, format!("expected a result made by `sweep.play`: {error}"))
-    };
+    let no_result =
+        |error: CellResultError| parameter_error(py, format!("expected a result made by `sweep.play`: {error}"));
     let (summary, files) = study.map_err(no_result)?;
     let files = files.map_err(|error| raised(py, "FrixelError", (error.to_string(),)))?;
     Ok((summary, files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect()))
