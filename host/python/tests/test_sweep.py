@@ -160,7 +160,7 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
         ({"scenes": "grating.toml"}, "a list of files, or a dictionary of scenes by their names, found 'grating.toml'"),
         (
             {"scenes": {"a": Scene.parse(GRATING).with_finger("dry")}},
-            "the scene a is for another finger or screen .* and a screen by `screens`",
+            "the scene a is for another finger or screen .* and screens in `screens`",
         ),
         (
             {"scenes": {"a": Scene.parse(GRATING).with_screen("example")}},
@@ -185,7 +185,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
         sweep.cells(tmp_path / "nowhere.toml")
     with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")
-    with pytest.raises(ParameterError, match=r"a cell is a text that `sweep\.cells` has made, found 3"):
+    with pytest.raises(ParameterError, match=r"a cell is a text made by `sweep\.cells`, found 3"):
         sweep.play(3)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="a study needs one result or more"):
         sweep.Study([])
