@@ -112,7 +112,7 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
     for changed, said in values:
         with pytest.raises(ParameterError, match=said):
             opened(tmp_path, **changed)
-    with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another one"):
+    with pytest.raises(ExperimentError, match=r"cannot be made \(File exists\): give another"):
         opened(tmp_path / "manifest.json")
 
 
