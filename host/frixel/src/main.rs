@@ -1,4 +1,4 @@
-//! The `frixel` command. `frixel help` lists what it can do.
+//! The `frixel` command. `frixel help` lists its commands.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;

@@ -100,7 +100,7 @@ pub(super) struct PlayArgs {
     /// Let a real board drive its electrode.
     #[arg(long, requires = "port")]
     arm: bool,
-    /// Play the scene anew whenever its file is saved.
+    /// Play the scene again whenever its file is saved.
     #[arg(long)]
     watch: bool,
     /// Change the scene by lines on standard input, such as `layer 3 off` (docs/design/scenes.md).

@@ -16,15 +16,14 @@ use frixel_files::Inputs;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {
-    /// The scene whose finger is measured, and of which the report says what is left out. Without it, the bundled
-    /// bricks.
+    /// The scene whose finger is measured, and whose use of the board is shown. Default: the bundled bricks.
     scene: Option<PathBuf>,
     #[command(flatten)]
     profiles: ProfileArgs,
     /// Folder for the page and its numbers.
     #[arg(long, default_value = "frixel-report")]
     out: PathBuf,
-    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json. Without it, those
+    /// Instruction counts of boards, as `cargo xtask bench` writes them to target/bench/bench.json. Default: the counts
     /// of this version.
     #[arg(long, value_name = "FILE.json")]
     bench: Option<PathBuf>,

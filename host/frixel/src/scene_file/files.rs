@@ -56,7 +56,7 @@ impl SceneFiles {
 
     /// Checks the files now. Call this once every [`CHECK_PERIOD`](super::CHECK_PERIOD).
     ///
-    /// Returns whether one of them was saved after it was read; false while a file is being written.
+    /// Returns whether a file was saved after it was read; false while a file is being written.
     pub(crate) fn is_saved(&mut self) -> bool {
         once(&mut self.scene).chain(&mut self.named).any(SavedFile::is_saved)
     }

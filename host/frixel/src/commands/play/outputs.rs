@@ -32,7 +32,7 @@ pub(super) struct PlayFiles {
     /// The other of the two, which an earlier play may have left.
     other_svg: OutputFile,
     png: OutputFile,
-    /// The file of `--record`, and what its recording is made from.
+    /// The file of `--record`, and the inputs of its recording.
     record: Option<(OutputFile, Sources)>,
 }
 
@@ -86,7 +86,7 @@ impl PlayFiles {
         Ok(self.record.iter().try_for_each(|(record, _)| record.check_inputs(&inputs))?)
     }
 
-    /// What the recording of `--record` is made from.
+    /// The inputs of the recording of `--record`.
     pub(super) fn sources(&self) -> Option<&Sources> {
         self.record.as_ref().map(|(_, sources)| sources)
     }

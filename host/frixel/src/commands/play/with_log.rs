@@ -34,7 +34,7 @@ impl LogJoin {
         Self { log: FeltLog::new(path), start_s: 0.0, waiting: VecDeque::new(), failure: None }
     }
 
-    /// Adds rows. Returns those that the log has reached, joined.
+    /// Adds rows. Returns the rows that the log has reached, joined.
     pub(super) fn add(&mut self, rows: Vec<LayeredRow>, start_s: f64) -> Vec<LayeredRow> {
         self.start_s = start_s;
         self.waiting.extend(rows);

@@ -206,7 +206,7 @@ def experiment(arguments: argparse.Namespace) -> None:
         truth = float(detection.voltage_of(observer.threshold(TWO_ALTERNATIVES), highest))
         say(f"  the observer     has a threshold of {truth:.1f} V rms")
         who = f", simulated observer {arguments.observer}"
-    say("  note             this gives no newtons: write scenes in fractions of what can be reached")
+    say("  note             the threshold has no newtons: write scenes in fractions of what can be reached")
     name = {"quest": "QUEST+", "up-down": "up-down staircase"}[arguments.method]
     finger = detection.perceptual_finger(
         threshold,

@@ -172,7 +172,7 @@ def magnitude_exponent(levels: ArrayLike, ratings: ArrayLike, *, seed: int = 0) 
     """
     x, y = array("levels", levels), array("ratings", ratings)
     if x.shape != y.shape or x.ndim != 1 or not (np.isfinite([x, y]).all() and (np.stack([x, y]) > 0.0).all()):
-        raise ParameterError("levels and ratings are two lists of one length of numbers above zero")
+        raise ParameterError("levels and ratings are two lists of equal length, with numbers above zero")
     x, y = np.log(x), np.log(y)
     if np.unique(x).size < 3:
         raise ParameterError(f"an exponent needs three levels or more, found {np.unique(x).size}")

@@ -69,7 +69,7 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
     fit::fit(fit::rows(csv)?.value, &settings)
 }
 
-/// What a board that drives 150 V rms adds to the friction of a person in steady sliding under a load, in newtons.
+/// Electric friction of a person at a steady drive of 150 V rms, in steady sliding under a load, in newtons.
 fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
     // The friction of the scene's finger at 150 V, reduced so that rounding stays within reach.
     let target_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
@@ -123,7 +123,7 @@ struct Outcome {
     person: u64,
     /// Error of electric friction, as a part of the truth.
     error: f64,
-    /// Half-width of its interval, likewise.
+    /// Half-width of its interval, as a part of the truth.
     half_width: f64,
     /// Whether the interval contains the truth.
     covers: bool,
