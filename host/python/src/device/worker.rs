@@ -248,7 +248,7 @@ fn replaced(Replaced { faded_out, dropped_gains }: Replaced) -> Vec<String> {
         "the pictures of both scenes do not fit on the board together: the output faded out meanwhile".to_owned()
     });
     let dropped =
-        dropped_gains.map(|clamped| format!("the gains are those of the scene: with those that were set, {clamped}"));
+        dropped_gains.map(|clamped| format!("gains are reset to the scene's: with the gains that were set, {clamped}"));
     faded_out.into_iter().chain(dropped).collect()
 }
 

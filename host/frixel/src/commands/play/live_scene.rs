@@ -166,7 +166,7 @@ fn replace<L: RecordedLink>(
     let (meanwhile, dropped_gains) = match player.replace(program) {
         Ok(Replaced { faded_out: false, dropped_gains }) => ("", dropped_gains),
         Ok(Replaced { faded_out: true, dropped_gains }) => (
-            "; its pictures and those before it do not fit on the board together: the output faded out meanwhile",
+            "; its pictures and the previous scene's do not fit on the board together: the output faded out meanwhile",
             dropped_gains,
         ),
         Err(refused) if refused.is_refusal() => {
@@ -182,7 +182,7 @@ fn replace<L: RecordedLink>(
     }
     note(format_args!("frixel: {} plays{how}{meanwhile}", path.display()));
     if let Some(clamped) = dropped_gains {
-        note(format_args!("frixel: its gains are those of the file: with those that were set, {clamped}"));
+        note(format_args!("frixel: its gains are reset to the file's: with the gains that were set, {clamped}"));
     }
     Ok(Some(ReplaceOutcome::Plays))
 }

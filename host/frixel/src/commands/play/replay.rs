@@ -26,7 +26,7 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     note_interrupted(path, &bytes);
     let recorded = Recording::read_parquet(bytes).map_err(at(path.display()))?;
     if recorded.is_cut_off {
-        note(format_args!("{}: it ends in a part of a row group, which is left out", path.display()));
+        note(format_args!("{}: the last row group is incomplete, and is left out", path.display()));
     }
     let played = recorded.replay(TO_THE_END);
     let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
