@@ -1,4 +1,4 @@
-//! `frixel check` and `frixel score` judge with one judge: they agree for the same finger, source and seed.
+//! `frixel check` and `frixel score` use the same judge: they agree for the same finger, source and seed.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::fs;
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::processes::run;
 
-/// What a check says of each layer.
+/// The verdicts of a check on each layer.
 fn checked(path: &Path) -> Vec<LayerVerdict> {
     let rig = RigConfig::default();
     let program = compile(&scene_file::load(path).unwrap(), &rig.board.limits, rig.board.tick_hz).unwrap();

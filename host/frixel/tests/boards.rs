@@ -1,4 +1,4 @@
-//! What real boards take of the gallery, as `docs/board/pico.md` says it.
+//! The scenes of the gallery that real boards take, as in `docs/board/pico.md`.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::collections::BTreeSet;
@@ -67,7 +67,7 @@ const OTHERS: [&str; 3] = [
      low_n = 0\nhigh_n = 0.02\nabove = \"natural\"\n",
 ];
 
-/// All that a scene can ask for is a feature, as both manifests have it.
+/// Everything that a scene can need is a feature in both manifests.
 #[test]
 fn the_smallest_firmware_has_what_the_scene_asks_for() {
     let folder = tempfile::tempdir().unwrap();

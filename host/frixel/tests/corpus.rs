@@ -22,7 +22,7 @@ use tempfile::TempDir;
 
 use crate::processes::{frixel, repository};
 
-/// A text in which the picture of a control character, such as `␛`, is that character.
+/// Replaces the picture of a control character, such as `␛`, with that character.
 fn with_controls(text: &str) -> String {
     let control = |letter: char| match letter {
         '\u{2400}'..='\u{241f}' => char::from_u32(u32::from(letter) - 0x2400).unwrap(),
@@ -31,7 +31,7 @@ fn with_controls(text: &str) -> String {
     text.chars().map(control).collect()
 }
 
-/// Blocks that are no files.
+/// Blocks that are not files.
 const COMMAND: &str = "command";
 const STDIN: &str = "stdin";
 const SHOWS: &str = "shows";
@@ -63,7 +63,7 @@ fn run_in(case: &Case, line: &str, folder: &Path) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// Names and contents of the files below a folder, without those that a link leads to.
+/// Names and contents of the files below a folder, without following links.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let below = |path: PathBuf| match (path.is_symlink(), path.is_dir()) {
@@ -90,7 +90,7 @@ fn show_json(path: &str, value: &Value, shown: &mut String) {
     }
 }
 
-/// The lines of a text, or of JSON, that begin with one of these words, which are no longer `missing` then.
+/// The lines of a text, or of JSON, that begin with one of these words. Removes the words found from `missing`.
 fn shown<'b>(text: &str, beginnings: &'b str, missing: &mut Vec<&'b str>) -> String {
     let mut lines = String::new();
     match serde_json::from_str::<Value>(text) {
@@ -109,7 +109,7 @@ fn shown<'b>(text: &str, beginnings: &'b str, missing: &mut Vec<&'b str>) -> Str
     shown
 }
 
-/// A line for each beginning that no line has.
+/// A line for each word with which no line begins.
 fn absent(missing: &[&str]) -> String {
     missing.iter().flat_map(|beginning| ["(no ", beginning, ")\n"]).collect()
 }

@@ -34,8 +34,8 @@ const SLOW: Class = Class { source: "100", wavelength_mm: 10.0 };
 const MEDIUM: Class = Class { source: "200", wavelength_mm: 5.0 };
 const FAST: Class = Class { source: "500", wavelength_mm: 2.0 };
 
-/// Class, median speed of the touches in mm/s, and what is held: the goal, or how far it is missed.
-/// `docs/design/touch.md` says why.
+/// Class, median speed of the touches in mm/s, and the bounds: the goal, or the measured miss. `docs/design/touch.md`
+/// gives the reasons.
 const CASES: [(Class, f64, Goal); 9] = [
     (SLOW, 50.0, Goal::SLOW),
     (SLOW, 100.0, Goal { error_max: 0.28, spurious_over_noise_max_db: 7.5, ..Goal::SLOW }),
@@ -148,7 +148,7 @@ fn textures_are_felt_within_the_goals_on_many_strokes_as_the_page_says() {
     hold_goals(&many);
 }
 
-/// The checks above see an output that is not there: a volt gives less than a millionth of a newton.
+/// The checks above fail without output: a volt gives less than a millionth of a newton.
 #[test]
 fn an_output_forced_to_zero_misses_every_goal() {
     for class in [SLOW, MEDIUM, FAST] {

@@ -41,7 +41,7 @@ fn a_calibrated_person_is_recovered() {
         ends
     };
 
-    // What is measured of fits in one process (`commands/finger/calibrate/coverage.rs`) is what the command prints.
+    // The command prints the fit that `commands/finger/calibrate/coverage.rs` evaluates in one process.
     let settings = Settings {
         voltage_v_rms: 150.0,
         normal_load_n: None,

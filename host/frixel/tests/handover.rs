@@ -1,4 +1,4 @@
-//! One client after the other on one board, in virtual time: what the first set going is not the second's.
+//! One client after the other on one board, in virtual time: the second does not inherit the first one's play.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::cell::{Cell, RefCell};
@@ -15,11 +15,11 @@ use frixel_testkit::Random;
 
 /// Host timeout of the scene here.
 const HOST_TIMEOUT: Duration = Duration::from_millis(100);
-/// Time within which a board acts on it (docs/board/safety.md).
+/// Time within which a board acts on the host timeout (docs/board/safety.md).
 const ACTS_WITHIN: Duration = Duration::from_millis(1);
-/// Clients that are killed.
+/// Number of clients that are killed.
 const KILLS: usize = 20;
-/// Of which the first die while the picture goes over the line.
+/// Number of these that die during the upload of the picture, before the others.
 const UPLOADS_KILLED: usize = 6;
 
 /// The brick with this host timeout.
@@ -46,7 +46,7 @@ impl Line<'_> {
     }
 }
 
-/// A client's end of the line. The client is killed when it has sent so many bytes.
+/// A client's end of the line. The client is killed after it has sent a number of bytes.
 struct Mortal<'a> {
     line: Line<'a>,
     bytes_left: usize,
@@ -108,7 +108,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
     let mut killed_while_playing = 0;
     for kill in 0..KILLS {
         if kill == UPLOADS_KILLED {
-            // Nothing of the dead is in the way of an upload.
+            // Earlier clients do not interfere with an upload.
             play(&line, &program, usize::MAX, a_while).unwrap();
         }
         // Once the board holds the picture, some 300 bytes lead to playing, and pings follow.

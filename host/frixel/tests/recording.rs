@@ -41,7 +41,7 @@ fn write(folder: &Path, name: &str, recording: &Recording) {
     fs::write(folder.join(name), bytes).unwrap();
 }
 
-/// Plays a recording that cannot be played again, or differs, and returns what is said.
+/// Replays a recording that cannot be replayed, or differs, and returns the error.
 fn refused(folder: &Path, name: &str) -> String {
     let output = run(folder, &["replay", name]);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -108,7 +108,7 @@ fn a_recording_has_the_rows_of_felt_csv_and_what_made_them() {
     let events: Vec<_> = metadata.markers.iter().map(|marker| (marker.ticks, &marker.event)).collect();
     assert_eq!(events, [(0, &MarkedEvent::SceneBegan), (28_000, &MarkedEvent::Stopped)]);
 
-    // Neither a path nor who or where.
+    // No path, user or host.
     let bytes = String::from_utf8_lossy(&fs::read(folder.path().join("a.parquet")).unwrap()).into_owned();
     assert!(!bytes.contains(&*folder.path().to_string_lossy()) && !bytes.contains("stroke.csv"));
 }
@@ -163,7 +163,7 @@ fn what_changes_a_play_is_marked_and_changes_it_again() {
     assert_eq!(recording.metadata.later_scenes[0].scene, PART);
     assert_played_again(folder.path(), "control");
 
-    // What was carried out is what is compared: another line gives other bits.
+    // The lines that were carried out are compared: another line gives other bits.
     let mut other = recording.clone();
     other.metadata.play["lines"][3] = "layer wall gain 0.6".into();
     write(folder.path(), "other.parquet", &other);
@@ -242,7 +242,7 @@ fn what_is_streamed_is_in_the_recording_and_streamed_again() {
     }
 }
 
-/// The duration of a file of samples is that of the play, in which the finger repeats its stroke.
+/// A play lasts as long as its file of samples, while the finger repeats its stroke.
 #[test]
 fn a_wav_file_is_in_the_recording_and_streamed_again() {
     let folder = folder();

@@ -11,7 +11,7 @@ fn scene() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/grating.toml")
 }
 
-/// What a score of a scene prints, with its files in a folder.
+/// The output of a score of a scene, with its files in a folder.
 fn score(out: &Path, scene: &Path, options: &[&str]) -> String {
     succeed(out, &[&["score", scene.to_str().unwrap(), "--out", "."], options].concat())
 }
@@ -37,7 +37,7 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
     assert_eq!(json["verdict"], "1 of 1 layer is noticed by the simulated finger");
 }
 
-/// Each person has a finger and strokes of their own, and the same people come again.
+/// Each person has a finger and strokes of their own, the same in every run.
 #[test]
 fn people_differ_and_come_again() {
     let out = tempfile::tempdir().unwrap();
@@ -75,7 +75,7 @@ fn the_command_of_the_touch_table_prints_its_row() {
     }
 }
 
-/// The number of threads changes nothing of what is said or written.
+/// Output and files do not depend on the number of threads.
 #[test]
 fn every_number_of_jobs_has_the_same_bytes() {
     let scored = |jobs: &str| {

@@ -72,7 +72,7 @@ fn is_dry(row: &FeltRow) -> bool {
 }
 
 /// Plays the tones under a sliding finger; the host sends nothing in `pause`, in milliseconds from the stream's start.
-/// Returns a row a tick, and what the board said of the stream.
+/// Returns a row per tick, and the board's reports of the stream.
 fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let folder = tempfile::tempdir().unwrap();
     let wav = folder.path().join("tones.wav");

@@ -85,7 +85,7 @@ fn parts_side_by_side_do_not_disturb_one_another() {
     assert!(folder.results("parts") == folder.results("whole"));
 }
 
-/// A killed sweep has lost the cells that were being played, and no other.
+/// A killed sweep loses only the cells that were being played.
 #[test]
 fn what_is_there_is_not_played_again() {
     let folder = Folder::new(PLAN);

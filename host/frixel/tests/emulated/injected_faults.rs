@@ -1,4 +1,4 @@
-//! What ends the firmware leaves the output at zero, and the next hello says why.
+//! Faults that end the firmware leave the output at zero, and the next hello has the reason.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! One scene for each form of a layer, each region and each blend, with what it means.
+//! One scene for each form of a layer, each region and each blend, with its expected friction.
 
 use frixel_testkit::samples::{Formula, along_deg, samples, sine, turn};
 

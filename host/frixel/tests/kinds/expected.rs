@@ -1,4 +1,4 @@
-//! What the words of `docs/design/scenes.md` mean, in mm, mN and seconds.
+//! Friction of each kind of layer by the definitions of `docs/design/scenes.md`, in mm, mN and seconds.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! Nothing of the user's is ever lost: what commands write, over every output of every command. The rules themselves
-//! are tested where they are kept, in `host/files`.
+//! No file of the user's is ever lost: tests of every output of every command. The rules themselves are tested in
+//! `host/files`.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 

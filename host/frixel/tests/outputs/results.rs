@@ -1,4 +1,4 @@
-//! What every command that writes results does, and does not.
+//! Rules for every command that writes results.
 
 use std::fs::{self, OpenOptions};
 use std::os::unix::fs::symlink;

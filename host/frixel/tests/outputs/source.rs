@@ -1,11 +1,11 @@
-//! No other way to a file.
+//! No source opens or writes files except through the crates for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::processes::repository;
 
-/// Functions of Rust that create, change, remove or read a file. What is read has an end: `host/lab/src/input` opens it.
+/// Functions of Rust that create, change, remove or read a file. `host/lab/src/input` opens files with a size limit.
 const CALLS: [&str; 16] = [
     "File::open",
     "fs::read(",

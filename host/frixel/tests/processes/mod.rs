@@ -1,4 +1,4 @@
-//! What tests of `frixel` as a process share.
+//! Shared by the tests that run `frixel` as a process.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "part of a test, which may fail")]
 
 use std::path::{Path, PathBuf};
@@ -33,14 +33,14 @@ pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
     frixel().args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// What a command that succeeds prints.
+/// The standard output of a command that succeeds.
 pub(crate) fn succeed(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", said(&output));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// What a command says on standard error.
+/// The standard error of a command.
 pub(crate) fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }

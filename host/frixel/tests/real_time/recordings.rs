@@ -67,7 +67,7 @@ fn a_recording_that_ends_early_leaves_its_rows_which_the_next_one_names_and_fini
     }
 }
 
-/// Neither a port that is mistyped nor a screen that nobody touches costs rows, even with leave to replace them.
+/// Neither a mistyped port nor an untouched screen costs rows, even with `--overwrite`.
 #[test]
 fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
     let folder = TempDir::new().unwrap();
