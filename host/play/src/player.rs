@@ -403,8 +403,8 @@ impl<L: Link + Recorded> Player<L> {
 /// Refuses a program whose finger was not measured at the required voltage or load, unless the board is simulated.
 /// [`Player::start`] and [`Player::replace`] check this, too; callers check it before they write anything.
 pub fn check_measured(program: &Program, board: BoardKind) -> Result<(), PlayError> {
-    let warning = program.warnings().find(|warning| !board.is_simulated() && warning.is_refused_by_boards());
-    warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning: warning.to_string() }))
+    let warning = program.unmeasured().filter(|_| !board.is_simulated());
+    warning.map_or(Ok(()), |warning| Err(PlayError::Unmeasured { warning }))
 }
 
 #[cfg(test)]

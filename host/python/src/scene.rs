@@ -131,7 +131,7 @@ impl Scene {
     /// Reasons to doubt the scene, and what was rounded or clamped, one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.program.warnings().map(ToString::to_string).chain(self.program.notes().map(str::to_owned)).collect()
+        self.program.warnings().chain(self.program.notes()).collect()
     }
 
     /// The output of `frixel check --json`.

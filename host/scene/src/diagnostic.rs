@@ -27,7 +27,7 @@ pub struct Diagnostic {
     /// several.
     pub layer: Option<usize>,
     /// The sentence.
-    pub message: Message,
+    pub(crate) message: Message,
 }
 
 /// Severity of a diagnostic.
@@ -45,7 +45,7 @@ pub enum DiagnosticKind {
 
 /// The sentence of a diagnostic.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum Message {
+pub(crate) enum Message {
     /// The sentence of a mistake or a refusal.
     #[error(transparent)]
     Mistake(#[from] Mistake),

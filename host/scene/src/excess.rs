@@ -1,6 +1,6 @@
 //! Finds layers whose target friction is out of reach.
 
-use frixel_layers::{Blend, Header, Interval, Layer as RecordLayer, Record};
+use frixel_layers::{Blend, Interval, Layer as RecordLayer, Record};
 
 use super::cover::{Cell, PLACES_MAX, excesses, widened};
 use super::digits::{digits, down, up};
@@ -29,19 +29,12 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
     let reference = Reference::new(program);
     let mut reported = Vec::new();
     for excess in excesses(&program.header, reference.pieces(), within, PLACES_MAX) {
-        let layers: Vec<LayerWithRecord> = excess
-            .layers
-            .iter()
-            .filter_map(|number| Some((*played.get(*number)?, program.records.get(*number)?)))
-            .map(|(layer, record)| LayerWithRecord { layer, record })
-            .collect();
-        let ridges = added_ridges(program, &excess.layers);
-        let ridges = ridges_in_reach_as_largest(&program.header, &reference, &excess.layers, &ridges, within)
-            .then(|| ridges.iter().filter_map(|number| program.titles.get(*number)).collect::<Vec<_>>());
-        let largest_of = ridges.map(|titles| listed(&titles));
+        let layers = excess.layers.iter();
+        let layers = layers.filter_map(|number| Some((*played.get(*number)?, program.records.get(*number)?))).collect();
+        let largest_of = ridges_in_reach_as_largest(program, &reference, &excess.layers);
         let demand = Demand { layers, cell: excess.cell, within, reach: &program.reach, raise, largest_of };
         log.set_layer(match &demand.layers[..] {
-            [one] => Some(one.layer.number().table),
+            [(layer, _)] => Some(layer.number().table),
             _ => None,
         });
         let found = demand.sides(excess.found, log);
@@ -56,7 +49,7 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
             }
         } else {
             // Copies of a layer exceed the reach in the same way.
-            let has_copy = demand.layers.iter().any(|played| played.layer.is_copy);
+            let has_copy = demand.layers.iter().any(|(layer, _)| layer.is_copy);
             for Side { offset, mistake } in found {
                 if !has_copy || !reported.contains(&offset) {
                     log.add(offset, mistake);
@@ -68,36 +61,24 @@ pub(super) fn check(scene: &Scene, played: &[&Layer], raise: Raise, program: &Pr
     log.set_layer(None);
 }
 
-/// The layers of `numbers` that add a ridge to the layers below, if there are several.
-fn added_ridges(program: &Program, numbers: &[usize]) -> Vec<usize> {
+/// The layers of `numbers` that add a ridge to the layers below, if there are several, and if all of `numbers` stay in
+/// reach once these have `blend = "max"`.
+fn ridges_in_reach_as_largest(program: &Program, reference: &Reference, numbers: &[usize]) -> Option<String> {
     let is_added_ridge = |record: &Record| match record.layer {
         RecordLayer::Edge(edge) => record.blend == Blend::Add && record.gain * edge.ridge_n > 0.0,
         _ => false,
     };
-    let ridges = numbers.iter().copied().filter(|number| program.records.get(*number).is_some_and(is_added_ridge));
-    Some(ridges.collect()).filter(|ridges: &Vec<usize>| ridges.len() > 1).unwrap_or_default()
-}
-
-/// Whether the layers of `numbers` stay in reach if `ridges`, a subset, have `blend = "max"`.
-fn ridges_in_reach_as_largest(
-    header: &Header,
-    reference: &Reference,
-    numbers: &[usize],
-    ridges: &[usize],
-    within: Interval<f64>,
-) -> bool {
-    if ridges.is_empty() {
-        return false;
-    }
-    let pieces: Vec<_> = numbers
-        .iter()
-        .filter_map(|number| {
-            let mut piece = reference.pieces().get(*number)?.clone();
-            piece.blend = if ridges.contains(number) { Blend::Max } else { piece.blend };
-            Some(piece)
-        })
-        .collect();
-    widened(within, header, &pieces, PLACES_MAX).high <= within.high
+    let ridges = numbers.iter().filter(|number| program.records.get(**number).is_some_and(is_added_ridge));
+    let ridges: Vec<usize> = ridges.copied().collect();
+    (ridges.len() > 1).then_some(())?;
+    let pieces = numbers.iter().filter_map(|number| {
+        let mut piece = reference.pieces().get(*number)?.clone();
+        piece.blend = if ridges.contains(number) { Blend::Max } else { piece.blend };
+        Some(piece)
+    });
+    let (within, pieces) = (program.within_reach(), pieces.collect::<Vec<_>>());
+    let titles: Vec<&LayerTitle> = ridges.iter().filter_map(|number| program.titles.get(*number)).collect();
+    (widened(within, &program.header, &pieces, PLACES_MAX).high <= within.high).then(|| listed(&titles))
 }
 
 impl Program {
@@ -108,16 +89,10 @@ impl Program {
     }
 }
 
-/// A layer with its record.
-struct LayerWithRecord<'a> {
-    layer: &'a Layer,
-    record: &'a Record,
-}
-
 /// Layers that exceed the reach together.
 struct Demand<'a> {
-    /// From bottom to top.
-    layers: Vec<LayerWithRecord<'a>>,
+    /// From bottom to top, with their records.
+    layers: Vec<(&'a Layer, &'a Record)>,
     cell: Cell,
     within: Interval<f64>,
     reach: &'a Reach,
@@ -137,7 +112,7 @@ impl Demand<'_> {
     fn sides(&self, asked: Interval<f64>, log: &Log) -> Vec<Side> {
         let Self { within, reach, .. } = self;
         let above = match &self.layers[..] {
-            [LayerWithRecord { layer, .. }] => layer.above,
+            [(layer, _)] => layer.above,
             _ => Above::Natural,
         };
         let (reference, offset_n) = match above {
@@ -149,9 +124,9 @@ impl Demand<'_> {
             let clicked = self.clicked(log);
             let is_sum = clicked.is_some() || self.layers.len() > 1;
             // A larger voltage also raises the target of a fraction.
-            let has_fraction = self.layers.iter().any(|played| has_fraction(played.layer));
-            let has_newtons = self.layers.iter().any(|played| played.layer.places.has_unit("_n"));
-            let is_added = self.layers.iter().any(|played| played.layer.blend == Blend::Add);
+            let has_fraction = self.layers.iter().any(|(layer, _)| has_fraction(layer));
+            let has_newtons = self.layers.iter().any(|(layer, _)| layer.places.has_unit("_n"));
+            let is_added = self.layers.iter().any(|(layer, _)| layer.blend == Blend::Add);
             let is_amount = above == Above::Natural && !is_sum && !is_added && has_newtons && !has_fraction;
             let may_be_total = is_amount && (0.0..=within.high).contains(&(asked.high - reach.natural_friction_n));
             let (target_n, reach_n) = (asked.high + offset_n, reach.electric_friction_max_n + offset_n);
@@ -198,7 +173,7 @@ impl Demand<'_> {
     fn cure_below(&self, above: Above) -> &'static str {
         match &self.layers[..] {
             [_] if above == Above::Zero => "raise it, or lower `normal_load_n`",
-            [LayerWithRecord { layer, .. }] if layer.blend == Blend::Replace => "raise it",
+            [(layer, _)] if layer.blend == Blend::Replace => "raise it",
             [_] => "raise it, or the ground beneath it, by a layer with more friction",
             _ => "raise one of them, or the ground beneath them",
         }
@@ -207,7 +182,7 @@ impl Demand<'_> {
     /// The fields of a single layer that exceed the reach together with its click, with their values; `None` for
     /// several layers, or for a layer without a click.
     fn clicked(&self, log: &Log) -> Option<String> {
-        let [LayerWithRecord { layer, record }] = &self.layers[..] else { return None };
+        let [(layer, record)] = &self.layers[..] else { return None };
         let gain = f64::from(record.gain);
         let click_n = Some(gain * f64::from(record.layer.click()?.height_n)).filter(|click_n| *click_n > 0.0)?;
         let Clicked { bases, click } = layer.kind.clicked(&layer.places, &record.layer)?;
@@ -223,7 +198,7 @@ impl Demand<'_> {
 
     /// The layers' names with the verb, followed by the place if there are several layers.
     fn asking(&self, clicked: Option<String>) -> String {
-        if let [LayerWithRecord { layer, .. }] = &self.layers[..] {
+        if let [(layer, _)] = &self.layers[..] {
             let gain = layer.places.has("gain").then(|| format!("with its gain of {}", layer.gain));
             let insertions: Vec<String> = [gain, clicked].into_iter().flatten().collect();
             return if insertions.is_empty() {
@@ -232,7 +207,7 @@ impl Demand<'_> {
                 format!("{}, {}, asks for", layer.title, insertions.join(", "))
             };
         }
-        let titles: Vec<&LayerTitle> = self.layers.iter().map(|played| &played.layer.title).collect();
+        let titles: Vec<&LayerTitle> = self.layers.iter().map(|(layer, _)| &layer.title).collect();
         let mm = |metres: f64| digits(metres * 1e3, f64::round);
         format!(
             "{} together (x {} to {} mm, y {} to {} mm) ask for",
@@ -248,11 +223,11 @@ impl Demand<'_> {
     fn place(&self, most: bool) -> usize {
         match &self.layers[..] {
             [] => 0,
-            [LayerWithRecord { layer, record }] => {
+            [(layer, record)] => {
                 let most = most == (layer.gain >= 0.0);
                 layer.places.field(layer.kind.extreme(most, &layer.places, &record.layer))
             }
-            [.., LayerWithRecord { layer, .. }] => layer.places.table(),
+            [.., (layer, _)] => layer.places.table(),
         }
     }
 }

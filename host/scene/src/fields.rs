@@ -7,7 +7,7 @@ mod values;
 
 pub use misplaced::has_unit;
 pub(super) use text::{parsed, read_text};
-pub(super) use values::TableOrText;
+pub(super) use values::{TableOrText, all};
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -17,9 +17,9 @@ use super::log::Log;
 use super::mistake::{FieldMistake, FileMistake};
 use super::nearest::Nearest;
 use super::source::Places;
-use misplaced::{Misplaced, Unknown};
 
 /// A table that is being read. Each field that the parser reads becomes known; [`Fields::close`] reports the others.
+#[derive(Default)]
 pub(super) struct Fields<'i> {
     table: String,
     /// The field that contains the table.
@@ -82,22 +82,7 @@ fn without<'i>(table: &DeTable<'i>, other: &DeTable) -> DeTable<'i> {
 impl<'i> Fields<'i> {
     /// A table that starts at byte `offset`. Messages call it `table`.
     pub(super) fn new(table: impl Into<String>, offset: usize, values: DeTable<'i>) -> Self {
-        Self {
-            table: table.into(),
-            key: "",
-            values,
-            defaults: DeTable::new(),
-            pixel_mm: None,
-            misspelt_defaults: Vec::new(),
-            places: Places::new(offset),
-            known: Vec::new(),
-            required: Vec::new(),
-            either: Vec::new(),
-            region_is_place: false,
-            is_guess: false,
-            replaced_defaults: Vec::new(),
-            replaces_default: false,
-        }
+        Self { table: table.into(), values, places: Places::new(offset), ..Self::default() }
     }
 
     /// The table of a field.
@@ -241,9 +226,9 @@ impl<'i> Fields<'i> {
         !self.values.is_empty()
     }
 
-    /// Whether the file has a field that was read.
-    pub(super) fn has_been_read(&self, field: &str) -> bool {
-        self.places.has(field)
+    /// Offsets of the table and of the fields that were read.
+    pub(super) fn places(&self) -> &Places {
+        &self.places
     }
 
     /// Offset of a field that was not read yet, or of the table if the file does not have it.
@@ -263,11 +248,6 @@ impl<'i> Fields<'i> {
         self.require(field);
     }
 
-    /// Offset of the table.
-    pub(super) fn table_place(&self) -> usize {
-        self.places.table()
-    }
-
     /// The table's name in messages.
     pub(super) fn table_name(&self) -> &str {
         &self.table
@@ -276,19 +256,6 @@ impl<'i> Fields<'i> {
     /// Records that two fields have the same meaning, so that a file may have only one of them.
     pub(super) fn either(&mut self, one: &FieldSpec, other: &FieldSpec) {
         self.either.push([one.name, other.name]);
-    }
-
-    /// Reports fields that belong to another table, as one mistake for each of these tables.
-    fn misplaced(&self, log: &mut Log) -> Misplaced {
-        let unknown: Vec<Unknown> = self
-            .values
-            .keys()
-            .map(|name| (name.get_ref().clone().into_owned(), name.span().start))
-            .zip(self.values.values().map(|value| value.span().start))
-            .map(|((name, offset), value_offset)| Unknown { name, offset, value_offset })
-            .collect();
-        let has = |field: &str| self.known.iter().any(|known| known.field.name == field);
-        misplaced::report(&self.table, self.key, &unknown, has, log)
     }
 
     fn described(&self) -> KnownTable {

@@ -7,7 +7,7 @@ use toml::de::DeTable;
 
 use super::compile_error::CompileError;
 use super::diagnostic::Diagnostic;
-use super::fields::{Fields, PixelSize, parsed};
+use super::fields::{Fields, PixelSize, all, parsed};
 use super::files::{FileUnavailable, Files};
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
@@ -201,8 +201,7 @@ fn files<'s>(log: &mut Log<'s>) -> Option<Vec<Fields<'s>>> {
         let table = if file.start == 0 { "the scene" } else { &file.name };
         parsed(file, log).map(|values| Fields::new(table, file.start, values))
     });
-    // Parse every file, to report the mistakes of all.
-    fields.collect::<Vec<Option<Fields>>>().into_iter().collect()
+    all(fields)
 }
 
 fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {

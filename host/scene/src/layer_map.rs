@@ -49,13 +49,6 @@ fn advice(nearest: Option<&str>, numbers: &[String]) -> String {
     }
 }
 
-/// The first and the last of some names, or the only one.
-fn ends<T: Into<String>>(mut names: impl DoubleEndedIterator<Item = T>) -> Vec<String> {
-    let first = names.next();
-    let last = names.next_back();
-    first.into_iter().chain(last).map(Into::into).collect()
-}
-
 impl LayerMap {
     /// The layers from bottom to top, each with its record if the host may change it.
     pub(super) fn new<'l>(layers: impl IntoIterator<Item = (&'l Layer, Option<u8>)>) -> Self {
@@ -105,58 +98,8 @@ impl LayerMap {
             named.and_then(|entry| entry.family.clone()).filter(|_| !layer.contains(char::is_numeric)).unwrap_or(name)
         };
         let nearest = Nearest::new(layer, known).suggestion.map(family_of);
-        let numbers = ends(self.0.iter().map(|entry| entry.number.to_string()));
+        let mut numbers = self.0.iter().map(|entry| entry.number.to_string());
+        let numbers = numbers.next().into_iter().chain(numbers.next_back()).collect();
         LayerError::Unknown { found: layer.to_owned(), nearest, numbers }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn entry(table: usize, copy: Option<usize>, name: Option<&str>, record: Option<u8>) -> Entry {
-        let name = name.map(str::to_owned);
-        let family = copy.and(name.as_ref()).map(|name| name.trim_end_matches([' ', '1', '2', '3']).to_owned());
-        Entry { number: LayerNumber { table, copy }, name, family, record }
-    }
-
-    fn map() -> LayerMap {
-        LayerMap(vec![
-            entry(1, None, None, Some(0)),
-            entry(2, None, Some("bricks"), None),
-            entry(3, Some(1), Some("rain 1"), Some(1)),
-            entry(3, Some(2), Some("rain 2"), Some(2)),
-            entry(3, Some(3), Some("rain 3"), Some(3)),
-            entry(4, None, Some("1"), Some(4)),
-            entry(5, Some(1), None, Some(5)),
-            entry(5, Some(2), None, Some(6)),
-        ])
-    }
-
-    #[test]
-    fn a_layer_is_found_by_name_or_by_the_number_of_messages() {
-        for (layer, record) in [("rain 2", 2), ("3.2", 2), ("5.1", 5), ("1", 4), ("4", 4)] {
-            assert_eq!(map().records(layer), Ok(vec![record]), "{layer}");
-        }
-        for (layer, records) in [("rain", [1, 2, 3].as_slice()), ("3", &[1, 2, 3]), ("5", &[5, 6])] {
-            assert_eq!(map().records(layer), Ok(records.to_vec()), "{layer}");
-        }
-        assert_eq!(map().records("bricks"), Err(LayerError::NotLive { layer: "bricks".into() }));
-    }
-
-    #[test]
-    fn a_layer_that_is_not_found_is_missed_in_a_sentence() {
-        for (layer, sentence) in [
-            ("Bricks", "the scene has no layer \"Bricks\": did you mean \"bricks\"?"),
-            ("Rain", "the scene has no layer \"Rain\": did you mean \"rain\"?"),
-            ("rian", "the scene has no layer \"rian\": did you mean \"rain\"?"),
-            ("RAIN 2", "the scene has no layer \"RAIN 2\": did you mean \"rain 2\"?"),
-            ("6", "the scene has no layer \"6\": give the name of a layer, or its number, 1 to 5.2"),
-            ("", "the scene has no layer \"\": give the name of a layer, or its number, 1 to 5.2"),
-        ] {
-            assert_eq!(map().records(layer).unwrap_err().to_string(), sentence);
-        }
-        let nothing = LayerMap::default().records("x").unwrap_err().to_string();
-        assert_eq!(nothing, "the scene has no layer \"x\": it has no layers");
     }
 }

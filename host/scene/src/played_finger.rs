@@ -36,11 +36,6 @@ impl PlayedFinger {
         );
         (Self { title, origin: Origin::Assumed }, Some(note))
     }
-
-    /// [`Origin::newtons_suffix`] of its origin.
-    pub fn newtons_suffix(&self) -> &'static str {
-        self.origin.newtons_suffix()
-    }
 }
 
 fn verb(evidence: &Evidence) -> &'static str {

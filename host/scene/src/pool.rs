@@ -3,13 +3,15 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use frixel_layers::Bitmap as Record;
+
 use super::file::Scene;
 use super::files::{FileUnavailable, file_name};
 use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
 use super::layer::{Layer, Rectangle, Region};
 use super::log::Log;
+use super::lower::{MM, place};
 use super::mistake::FileMistake;
-use super::nearest::Nearest;
 use super::optimisation::Optimisation;
 use super::picture::{PIXELS_MAX, Picture};
 use super::printable::printable;
@@ -25,7 +27,8 @@ pub(super) struct Pool {
     size_bytes: u32,
     /// The pitch of finer pictures with `pitch_mm = "auto"`.
     shared_pitch_mm: f64,
-    bitmaps: Vec<Bitmap>,
+    screen_mm: (f64, f64),
+    pub(super) bitmaps: Vec<Bitmap>,
 }
 
 /// The pictures of a scene, each decoded once, or the reason why a picture cannot be used.
@@ -49,14 +52,8 @@ pub(super) enum Unplaced {
 
 /// A bitmap and its place on the screen.
 pub(crate) struct Placed {
-    /// CRC-32 of the samples: the bitmap's name.
-    pub(crate) crc32: u32,
-    /// The corner of its first sample, x and y.
-    pub(crate) corner_mm: (f64, f64),
-    /// Distance between samples in a row, and between rows.
-    pub(crate) pitches_mm: (f64, f64),
-    pub(crate) angle_turns: f32,
-    pub(crate) tiled: bool,
+    /// The record, without friction.
+    pub(crate) record: Record,
     /// The picture's outline; `None` for a tiled picture.
     pub(crate) outline: Option<Region>,
     /// Whether it is transparent and of one grey, so that another ground would reveal its shape.
@@ -79,7 +76,7 @@ impl Placed {
         // A picture is rotated about its centre.
         let (half_width_mm, half_height_mm) = (0.5 * whole.width_mm, 0.5 * whole.height_mm);
         let (middle_x_mm, middle_y_mm) = (whole.x_mm + half_width_mm, whole.y_mm + half_height_mm);
-        let (cos, sin) = direction(bitmap.angle_deg);
+        let (cos, sin) = place::direction(bitmap.angle_deg);
         let turned =
             |x_mm: f64, y_mm: f64| (middle_x_mm + cos * x_mm - sin * y_mm, middle_y_mm + sin * x_mm + cos * y_mm);
         let pitches_mm = if bitmap.tiled {
@@ -103,18 +100,21 @@ impl Placed {
                 turned(-half_width_mm, half_height_mm),
             ])),
         };
-        let angle_turns = (bitmap.angle_deg / 360.0) as f32;
+        let record = Record {
+            crc32,
+            x_m: (corner_mm.0 * MM) as f32,
+            y_m: (corner_mm.1 * MM) as f32,
+            pitch_m: (pitches_mm.0 * MM) as f32,
+            black_n: 0.0,
+            white_n: 0.0,
+            pitch_y_m: (pitches_mm.1 * MM) as f32,
+            angle_turns: place::turns(bitmap.angle_deg),
+            tiled: bitmap.tiled,
+        };
         let height_kept_mm = whole.width_mm * height_per_width(picture);
         let height_factor = whole.height_mm / height_kept_mm;
-        let tiled = bitmap.tiled;
-        Self { crc32, corner_mm, pitches_mm, angle_turns, tiled, outline, is_hidden, height_factor, height_kept_mm }
+        Self { record, outline, is_hidden, height_factor, height_kept_mm }
     }
-}
-
-/// Cosine and sine of an angle; exact for right angles.
-fn direction(angle_deg: f64) -> (f64, f64) {
-    let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
-    (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
 }
 
 /// The picture's rectangle before rotation. Place and size default to those of the layer's region.
@@ -176,8 +176,7 @@ fn height_per_width(picture: &Picture) -> f64 {
 
 /// The finest pitch, in hundredths of a millimetre, at which a scene's bitmaps fit into the pool if all layers with
 /// `pitch_mm = "auto"` use it; the coarsest one if none fits.
-fn shared_pitch_mm(scene: &Scene, pictures: &Decoded, size_bytes: u32) -> f64 {
-    let screen_mm = (scene.screen().width_mm, scene.screen().height_mm);
+fn shared_pitch_mm(scene: &Scene, screen_mm: (f64, f64), pictures: &Decoded, size_bytes: u32) -> f64 {
     let bitmaps = scene.layers.iter().filter_map(|layer| {
         let Kind::Bitmap(bitmap) = &layer.kind else { return None };
         let picture = pictures.get(&bitmap.picture)?.as_ref().ok()?;
@@ -255,30 +254,21 @@ fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>, pixels_max: usi
     if name.is_empty() {
         return Err(FileMistake::NoFileName { field: "picture" });
     }
-    let unusable = |reason: String| FileMistake::FileUnusable { what: "picture", file: name.to_owned(), reason };
-    match bytes {
-        Ok(bytes) => Picture::decode(bytes, pixels_max).map_err(|error| unusable(error.to_string())),
-        Err(FileUnavailable::Unreadable { reason }) => Err(unusable(format!("it cannot be read ({reason})"))),
-        Err(FileUnavailable::Missing { place, files }) => Err(FileMistake::FileMissing {
-            what: "picture",
-            file: name.to_owned(),
-            folder: place.clone(),
-            nearest: Nearest::file(file_name(name), files),
-        }),
-    }
+    let bytes = bytes.as_ref().map_err(|unavailable| FileMistake::unavailable("picture", name, unavailable))?;
+    Picture::decode(bytes, pixels_max).map_err(|error| FileMistake::FileUnusable {
+        what: "picture",
+        file: name.to_owned(),
+        reason: error.to_string(),
+    })
 }
 
 impl Pool {
     /// Decodes the pictures of a scene, for a pool of `size_bytes`.
     pub(super) fn new(scene: &Scene, size_bytes: u32) -> Self {
         let pictures = decoded(scene, PIXELS_MAX);
-        let shared_pitch_mm = shared_pitch_mm(scene, &pictures, size_bytes);
-        Self { pictures, size_bytes, shared_pitch_mm, bitmaps: Vec::new() }
-    }
-
-    /// The bitmaps.
-    pub(super) fn finish(self) -> Vec<Bitmap> {
-        self.bitmaps
+        let screen_mm = (scene.screen().width_mm, scene.screen().height_mm);
+        let shared_pitch_mm = shared_pitch_mm(scene, screen_mm, &pictures, size_bytes);
+        Self { pictures, size_bytes, shared_pitch_mm, screen_mm, bitmaps: Vec::new() }
     }
 
     /// Resamples the picture of a layer. `region` bounds the layer's region, if it has one.
@@ -287,14 +277,13 @@ impl Pool {
         layer: &Layer,
         bitmap: &BitmapLayer,
         region: Option<Rectangle>,
-        screen_mm: (f64, f64),
         log: &mut Log,
     ) -> Result<Placed, Unplaced> {
         let picture = self.pictures.get(&bitmap.picture).ok_or(Unplaced::Reported)?;
         let picture = picture.as_ref().map_err(|mistake| Unplaced::Unusable(mistake.clone()))?;
         let whole = rectangle(bitmap, region, height_per_width(picture)).ok_or(Unplaced::Reported)?;
         let pitch_mm = pitch_mm(bitmap, picture, whole, self.shared_pitch_mm);
-        let (across, down) = axes(bitmap, pitch_mm, picture, whole, region, screen_mm);
+        let (across, down) = axes(bitmap, pitch_mm, picture, whole, region, self.screen_mm);
         // Check before resampling, so that a far too fine pitch allocates no memory.
         let bytes = across.samples as u64 * down.samples as u64;
         self.check_room(pitch_mm, bytes)?;

@@ -8,11 +8,9 @@ use frixel_wire::scene::bitmap_crc32;
 use super::LayerSetting;
 use super::diagnostic::{Diagnostic, DiagnosticKind, Message};
 use super::layer_map::LayerMap;
-use super::optimisation::Optimisation;
 use super::played_finger::PlayedFinger;
 use super::reach::Reach;
 use super::titles::LayerTitle;
-use super::warning::Warning;
 
 /// A compiled scene, with its pictures.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,28 +55,31 @@ impl Program {
         self.diagnostics.iter().filter(|diagnostic| diagnostic.kind == DiagnosticKind::Refusal)
     }
 
-    /// Reasons to doubt the program's newtons.
-    pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
-        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
-            Message::Warning(warning) => Some(warning),
-            _ => None,
-        })
+    /// Reasons to doubt the program's newtons, one sentence each.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.sentences(|message| matches!(message, Message::Warning(_)))
+    }
+
+    /// The warning for which boards refuse the program: its finger was not measured at the voltage or the load that it
+    /// needs.
+    pub fn unmeasured(&self) -> Option<String> {
+        let is_refused = |message: &Message| matches!(message, Message::Warning(one) if one.is_refused_by_boards());
+        self.sentences(is_refused).next()
     }
 
     /// Conversions, roundings and clamps, one sentence each.
-    pub fn notes(&self) -> impl Iterator<Item = &str> {
-        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
-            Message::Note(sentence) => Some(sentence.as_str()),
-            _ => None,
-        })
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        self.sentences(|message| matches!(message, Message::Note(_)))
     }
 
-    /// Parts of the file that the program does not need.
-    pub fn optimisations(&self) -> impl Iterator<Item = &Optimisation> {
-        self.diagnostics.iter().filter_map(|diagnostic| match &diagnostic.message {
-            Message::Optimisation(optimisation) => Some(optimisation),
-            _ => None,
-        })
+    /// Parts of the file that the program does not need, one sentence each.
+    pub fn optimisations(&self) -> impl Iterator<Item = String> {
+        self.sentences(|message| matches!(message, Message::Optimisation(_)))
+    }
+
+    fn sentences(&self, is_wanted: fn(&Message) -> bool) -> impl Iterator<Item = String> {
+        let messages = self.diagnostics.iter().map(|diagnostic| &diagnostic.message);
+        messages.filter(move |message| is_wanted(message)).map(ToString::to_string)
     }
 
     /// The same scene without layers and pictures. A board plays it in between if it has no room for the pictures of

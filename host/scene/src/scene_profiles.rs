@@ -1,7 +1,7 @@
 //! The screen and the finger of a scene: embedded in its file, named by it, or the examples.
 
 use super::fields::{Fields, TableOrText};
-use super::files::{FileUnavailable, Files, file_name};
+use super::files::Files;
 use super::finger::{self, FingerProfile};
 use super::grammar::FieldSpec;
 use super::log::Log;
@@ -89,15 +89,7 @@ fn named<P: Profile>(name: &str, files: &dyn Files) -> Result<P, FileMistake> {
         });
     }
     let unusable = |reason: String| FileMistake::FileUnusable { what, file: name.to_owned(), reason };
-    let bytes = files.bytes(name).map_err(|unavailable| match unavailable {
-        FileUnavailable::Unreadable { reason } => unusable(format!("it cannot be read ({reason})")),
-        FileUnavailable::Missing { place, files } => FileMistake::FileMissing {
-            what,
-            file: name.to_owned(),
-            folder: place,
-            nearest: Nearest::file(file_name(name), &files),
-        },
-    })?;
+    let bytes = files.bytes(name).map_err(|unavailable| FileMistake::unavailable(what, name, &unavailable))?;
     let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
     P::parse(&text, name).map_err(|mistakes| unusable(mistakes.to_string().replace('\n', "; ")))
 }

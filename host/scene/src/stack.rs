@@ -18,12 +18,6 @@ use super::tables;
 /// Every field of any kind of layer.
 pub(super) static LAYER_FIELDS: LazyLock<Vec<KnownField>> = LazyLock::new(known_layer_fields);
 
-/// The layer tables and defaults of one file.
-struct Part<'i> {
-    layers: Vec<Fields<'i>>,
-    defaults: DeTable<'i>,
-}
-
 /// The tables of the layers of all files of a scene.
 pub(super) struct LayerTables<'i> {
     /// From bottom to top, with their defaults.
@@ -35,19 +29,21 @@ pub(super) struct LayerTables<'i> {
 impl<'i> LayerTables<'i> {
     /// Takes the layer tables out of the fields of a scene's files, of which the scene file is the first.
     pub(super) fn of(files: &mut [Fields<'i>], log: &mut Log) -> Self {
-        let mut misspelt = Vec::new();
-        let parts: Vec<Part<'i>> = files.iter_mut().map(|fields| part(fields, &mut misspelt, log)).collect();
+        let (mut tables, mut defaults, mut misspelt) = (Vec::new(), Vec::new(), Vec::new());
+        for fields in files {
+            let own = fields.table(log, &tables::scene::DEFAULTS).map(Fields::into_values).unwrap_or_default();
+            misspelt.extend(defaults::check_names(&own, log));
+            tables.push(fields.tables(log, &tables::scene::LAYER).unwrap_or_default());
+            defaults.push(own);
+        }
         let mut stacked = Vec::new();
-        stack(0, &parts, log, &mut stacked);
-        let own_defaults = parts.iter().map(|part| part.defaults.clone()).collect();
-        let mut parts: Vec<Option<Part>> = parts.into_iter().map(Some).collect();
+        stack(0, &defaults, log, &mut stacked);
         let mut layers = Vec::new();
         for (number, defaults) in stacked {
-            let part = parts.get_mut(number).and_then(Option::take);
-            let tables = part.into_iter().flat_map(|part| part.layers);
-            layers.extend(tables.map(|layer| layer.with_defaults(&defaults, &misspelt)));
+            let tables = tables.get_mut(number).map(std::mem::take).unwrap_or_default();
+            layers.extend(tables.into_iter().map(|layer| layer.with_defaults(&defaults, &misspelt)));
         }
-        Self { layers, defaults: own_defaults }
+        Self { layers, defaults }
     }
 
     /// The paths of all pictures that layers name, relative to the scene file's folder, including layers with mistakes.
@@ -60,7 +56,7 @@ impl<'i> LayerTables<'i> {
     /// scene's design, if it has one.
     pub(super) fn read(self, pixel_mm: Option<PixelSize>, log: &mut Log) -> Vec<Layer> {
         if let Some(first) = self.layers.first().filter(|_| self.layers.len() > LAYERS_MAX) {
-            log.add(first.table_place(), too_many(self.layers.len()));
+            log.add(first.places().table(), too_many(self.layers.len()));
             return Vec::new();
         }
         // Read every layer, to report the mistakes of all.
@@ -97,22 +93,16 @@ fn too_many(found: usize) -> FileMistake {
     )
 }
 
-fn part<'i>(fields: &mut Fields<'i>, misspelt: &mut Vec<String>, log: &mut Log) -> Part<'i> {
-    let defaults = fields.table(log, &tables::scene::DEFAULTS).map(Fields::into_values).unwrap_or_default();
-    misspelt.extend(defaults::check_names(&defaults, log));
-    Part { layers: fields.tables(log, &tables::scene::LAYER).unwrap_or_default(), defaults }
-}
-
 /// The numbers of the files from bottom to top, ending with file `number`, each with the defaults of its layers. Its
 /// own defaults take precedence over those of included files, of which the last one counts.
-fn stack<'i>(number: usize, parts: &[Part<'i>], log: &Log, stacked: &mut Vec<(usize, DeTable<'i>)>) -> DeTable<'i> {
+fn stack<'i>(number: usize, own: &[DeTable<'i>], log: &Log, stacked: &mut Vec<(usize, DeTable<'i>)>) -> DeTable<'i> {
     let mut defaults = DeTable::new();
     let includes = log.source().files().get(number).map_or(&[][..], |file| &file.includes);
     for included in includes {
-        defaults = overlaid(&defaults, stack(*included, parts, log, stacked));
+        defaults = overlaid(&defaults, stack(*included, own, log, stacked));
     }
-    if let Some(part) = parts.get(number) {
-        defaults = overlaid(&defaults, part.defaults.clone());
+    if let Some(own) = own.get(number) {
+        defaults = overlaid(&defaults, own.clone());
     }
     stacked.push((number, defaults.clone()));
     defaults

@@ -93,30 +93,3 @@ pub fn fold_copies(titles: &[&LayerTitle]) -> Vec<String> {
     });
     words.collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{LayerNumber, LayerTitle, listed};
-
-    fn titles<const N: usize>(layers: [(usize, Option<usize>, Option<&str>); N]) -> [LayerTitle; N] {
-        layers.map(|(table, copy, name)| LayerTitle::new(LayerNumber { table, copy }, name, "noise"))
-    }
-
-    #[test]
-    fn copies_are_folded() {
-        let [a, first, second, third, noise] = titles([
-            (1, None, Some("a.b")),
-            (2, Some(1), Some("k 1")),
-            (2, Some(2), Some("k 2")),
-            (2, Some(3), Some("k 3")),
-            (3, None, None),
-        ]);
-        assert_eq!(
-            listed(&[&a, &first, &second, &third, &noise]),
-            "layer 1 \"a.b\" and layer 2.1 \"k 1\" with 2 more copies and layer 3 (noise)"
-        );
-        assert_eq!(listed(&[&a, &first, &second]), "layer 1 \"a.b\" and layer 2.1 \"k 1\" and layer 2.2 \"k 2\"");
-        let [one, two, three] = titles([(1, None, Some("2.1")), (2, None, Some("2.1")), (3, None, Some("2.1"))]);
-        assert_eq!(listed(&[&one, &two, &three]).matches("copies").count(), 0);
-    }
-}

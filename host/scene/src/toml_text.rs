@@ -12,15 +12,20 @@ const NESTING_MAX: usize = 64;
 
 /// The tables of a text, or the offset of its first mistake.
 pub(crate) fn toml(text: &str) -> Result<DeTable<'_>, (usize, FileMistake)> {
-    check_toml(text)?;
+    check(text)?;
     let syntax = |error: toml::de::Error| {
         (error.span().map_or(0, |span| span.start), FileMistake::Syntax(error.message().to_owned()))
     };
     DeTable::parse(text).map(toml::Spanned::into_inner).map_err(syntax)
 }
 
-/// Checks the size and nesting of a text before parsing it; otherwise returns the offending place.
-pub fn check_toml(text: &str) -> Result<(), (usize, FileMistake)> {
+/// Checks the size and nesting of a text before it is parsed; returns the mistake as a sentence.
+pub fn check_toml(text: &str) -> Result<(), String> {
+    check(text).map_err(|(_, mistake)| mistake.to_string())
+}
+
+/// Checks the size and nesting of a text; otherwise returns the offending place.
+fn check(text: &str) -> Result<(), (usize, FileMistake)> {
     if text.len() as u64 > TEXT_MAX_BYTES {
         let advice = "divide it, or leave out what is not needed";
         return Err((0, FileMistake::too_much("bytes in this text", text.len(), TEXT_MAX_BYTES as usize, advice)));
@@ -93,7 +98,7 @@ mod tests {
     use super::*;
 
     fn refusal(text: &str) -> Option<String> {
-        check_toml(text).err().map(|(_, mistake)| mistake.to_string())
+        check_toml(text).err()
     }
 
     #[test]

@@ -2,7 +2,6 @@
 //! differs from its author's intention.
 
 use frixel_layers::{Blend, Interval};
-use serde::Serialize;
 use thiserror::Error;
 
 use super::cover::{PLACES_MAX, widened};
@@ -17,63 +16,38 @@ use super::reference::Reference;
 use super::titles::{LayerTitle, listed};
 
 /// A reason to doubt a program. Its text is one sentence for the scene's designer.
-#[derive(Clone, Debug, PartialEq, Error, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Warning {
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum Warning {
     /// The electric friction exceeds the finger's natural friction. The law was compared with measurements only below
     /// that, where the exponent of the voltage is near 2.
     #[error(
         "the scene asks for up to {electric_friction_n} N of electric friction, more than the finger's natural friction of \
          {natural_friction_n} N: the model is not confirmed there"
     )]
-    ElectricAboveNatural {
-        /// Largest electric friction that the scene asks for, N.
-        electric_friction_n: f64,
-        /// Friction at no voltage, N.
-        natural_friction_n: f64,
-    },
+    ElectricAboveNatural { electric_friction_n: f64, natural_friction_n: f64 },
     /// The scene needs a larger voltage than the measurement of the finger covers.
     #[error(
         "the scene needs up to {voltage_v_rms} V rms, and its finger was measured up to {measured_v_rms} V rms: lower \
          `voltage_max_v_rms`, or measure the finger again"
     )]
-    BeyondMeasuredVoltage {
-        /// Voltage for the largest friction that the scene asks for, V rms.
-        voltage_v_rms: f64,
-        /// Largest voltage of the measurement, V rms.
-        measured_v_rms: f64,
-    },
+    BeyondMeasuredVoltage { voltage_v_rms: f64, measured_v_rms: f64 },
     /// The finger's load is outside the measured range.
     #[error(
         "the finger's load of {normal_load_n} N is outside its measured range, {least_n} N to {largest_n} N: \
          change `normal_load_n`, or measure the finger again"
     )]
-    BeyondMeasuredLoad {
-        /// Load for which the scene is compiled, N.
-        normal_load_n: f64,
-        /// Least load of the measurement, N.
-        least_n: f64,
-        /// Largest load of the measurement, N.
-        largest_n: f64,
-    },
+    BeyondMeasuredLoad { normal_load_n: f64, least_n: f64, largest_n: f64 },
     /// The rms voltage exceeds what the peak limit of the board or screen allows.
     #[error(
         "`voltage_max_v_rms = {found}` exceeds what the {whose} allows: at most {max_v_rms:.1} V rms are driven, \
          given its limit of {max_v_peak} V peak{why} and a crest factor of {peak_per_rms:.3}"
     )]
     RmsOutOfReach {
-        /// The rms voltage of the scene and its screen, V.
         found: f64,
-        /// Owner of the limit: `board` or `screen`.
         whose: &'static str,
-        /// The limit, V peak.
         max_v_peak: f64,
-        /// Origin of the limit if it is the carrier; otherwise empty.
         why: &'static str,
-        /// Crest factor of the carrier: peak voltage over rms voltage.
         peak_per_rms: f64,
-        /// The rms voltage that remains, V.
         max_v_rms: f64,
     },
     /// The rim of a button leaves no room for its face.
@@ -81,14 +55,7 @@ pub enum Warning {
         "{layer}: a rim of {rim_width_mm} mm on both sides leaves no face on a button of {side_mm} mm: make `rim_width_mm` \
          less than {} mm", 0.5 * .side_mm
     )]
-    RimWiderThanButton {
-        /// The layer.
-        layer: String,
-        /// Width of the rim, mm.
-        rim_width_mm: f64,
-        /// The shorter side of the button, mm.
-        side_mm: f64,
-    },
+    RimWiderThanButton { layer: String, rim_width_mm: f64, side_mm: f64 },
     /// A picture is stretched along one side.
     #[error(
         "{layer}: the picture is stretched by {percent} % in {direction}: to keep its proportions, {}",
@@ -101,72 +68,34 @@ pub enum Warning {
             )
         }
     )]
-    PictureStretched {
-        /// The layer.
-        layer: String,
-        /// Excess of this side over the picture's proportions, in percent.
-        percent: f64,
-        /// `width` or `height`.
-        direction: &'static str,
-        /// Whether the layer itself has a `height_mm`.
-        has_own_height: bool,
-        /// The height that preserves the proportions, mm.
-        height_mm: f64,
-    },
+    PictureStretched { layer: String, percent: f64, direction: &'static str, has_own_height: bool, height_mm: f64 },
     /// Transparent and opaque parts of a picture have the same grey.
     #[error(
         "{layer}: its transparent and opaque parts have the same grey, so its shape cannot be felt: \
          write {cure}"
     )]
-    PictureHidden {
-        /// The layer.
-        layer: String,
-        /// The fix.
-        cure: &'static str,
-    },
+    PictureHidden { layer: String, cure: &'static str },
     /// The line of an edge without a region crosses a scene of layers with regions.
     #[error("{layer} has no `region`, so its line crosses the whole screen: add one to end the line there")]
-    EdgeAcrossScreen {
-        /// The layer.
-        layer: String,
-    },
+    EdgeAcrossScreen { layer: String },
     /// The line of an edge does not cross its region.
     #[error(
         "{layer}: its line lies {distance_mm} mm outside its `region` and is never crossed: move `x_mm` and `y_mm`, \
          which are screen coordinates, or the region"
     )]
-    EdgeOutsideRegion {
-        /// The layer.
-        layer: String,
-        /// From the line to the nearest corner of the rectangle around the region, mm.
-        distance_mm: f64,
-    },
+    EdgeOutsideRegion { layer: String, distance_mm: f64 },
     /// A layer without a region hides layers below it everywhere.
     #[error(
         "{layer} has no `region`, so it replaces {hidden} on the whole screen{}: give it a `region`, or a `blend` such \
          as \"add\"", if *.is_live { " while it is on" } else { "" }
     )]
-    HidesAllBelow {
-        /// The layer.
-        layer: String,
-        /// Whether the host switches the layer.
-        is_live: bool,
-        /// The hidden layers.
-        hidden: String,
-    },
+    HidesAllBelow { layer: String, is_live: bool, hidden: String },
     /// Two layers of one file have the same name.
     #[error(
         "{layer} has the same name as layer {lower}, which is the one that `--control` changes: rename it, \
          or refer to it as {number}"
     )]
-    NameTwice {
-        /// The upper layer.
-        layer: String,
-        /// Its number.
-        number: String,
-        /// The number of the lower layer.
-        lower: String,
-    },
+    NameTwice { layer: String, number: String, lower: String },
 }
 
 /// Stretch factor above which a warning is issued.
@@ -204,7 +133,7 @@ impl Warning {
     }
 
     /// Whether a real board refuses the program because it extrapolates a measurement.
-    pub fn is_refused_by_boards(&self) -> bool {
+    pub(super) fn is_refused_by_boards(&self) -> bool {
         matches!(self, Self::BeyondMeasuredVoltage { .. } | Self::BeyondMeasuredLoad { .. })
     }
 }

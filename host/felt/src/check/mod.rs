@@ -187,10 +187,10 @@ impl SceneCheck {
                 voltage_max_v_rms: reach.voltage_max_v_rms,
             },
             targets: TargetRange::of(program),
-            warnings: program.warnings().map(ToString::to_string).collect(),
+            warnings: program.warnings().collect(),
             judgement,
-            notes: program.notes().map(str::to_owned).collect(),
-            left_out: program.optimisations().map(ToString::to_string).collect(),
+            notes: program.notes().collect(),
+            left_out: program.optimisations().collect(),
             board: None,
         }
     }

@@ -180,7 +180,7 @@ impl Plan {
     pub fn parse(text: &str, name: &str) -> Result<Self, PlanError> {
         let brief_lines = |reason: &str| reason.trim_end().lines().map(brief).collect::<Vec<_>>().join("\n");
         let not_a_plan = |error: toml::de::Error| PlanError(format!("{name}: {}", brief_lines(&error.to_string())));
-        check_toml(text).map_err(|(_, mistake)| PlanError(format!("{name}: {mistake}")))?;
+        check_toml(text).map_err(|mistake| PlanError(format!("{name}: {mistake}")))?;
         let table: toml::Table = toml::from_str(text).map_err(not_a_plan)?;
         check_names(&table, name)?;
         let plan: Self = toml::from_str(text).map_err(not_a_plan)?;

@@ -20,6 +20,12 @@ pub(super) enum Coverage {
 }
 
 impl Cell {
+    /// The rectangle of a region, from its top left corner.
+    pub(crate) fn of_region(x_m: f32, y_m: f32, width_m: f32, height_m: f32) -> Self {
+        let (left_m, top_m) = (f64::from(x_m), f64::from(y_m));
+        Self { left_m, top_m, right_m: left_m + f64::from(width_m), bottom_m: top_m + f64::from(height_m) }
+    }
+
     pub(crate) fn corners(self) -> [(f64, f64); 4] {
         let Self { left_m, top_m, right_m, bottom_m } = self;
         [(left_m, top_m), (right_m, top_m), (left_m, bottom_m), (right_m, bottom_m)]
@@ -60,7 +66,7 @@ impl Coverage {
         let middle = shape.covers(x_m, y_m);
         match shape {
             // Cells are cut along the edges of rectangles, so no rectangle's edge crosses a cell.
-            Shape::Everywhere | Shape::Rectangle { .. } => {
+            Shape::Everywhere | Shape::Rectangle(_) => {
                 if middle {
                     Self::Whole
                 } else {

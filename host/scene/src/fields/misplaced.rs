@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::Fields;
 use crate::digits::digits;
 use crate::file::describe;
 use crate::log::Log;
@@ -10,11 +11,11 @@ use crate::printable::brief;
 use crate::stack::LAYER_FIELDS;
 
 /// A field that its table does not have.
-pub(super) struct Unknown {
-    pub(super) name: String,
+struct Unknown {
+    name: String,
     /// Offset of the name.
-    pub(super) offset: usize,
-    pub(super) value_offset: usize,
+    offset: usize,
+    value_offset: usize,
 }
 
 /// The fields of a table that belong to another one. Their mistakes have been reported.
@@ -64,67 +65,70 @@ fn name_in(home: &OwningTable, field: &str) -> Option<&'static str> {
     home.fields.iter().find(is_named).copied()
 }
 
-/// Reports the fields of a table, the value of `key`, that belong to other tables. `has` says whether the table can
-/// have a field.
-pub(super) fn report(
-    table: &str,
-    key: &str,
-    unknown: &[Unknown],
-    has: impl Fn(&str) -> bool,
-    log: &mut Log,
-) -> Misplaced {
-    let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
-    // The known fields themselves result from reading tables.
-    if unknown.is_empty() || log.is_describing() {
-        return misplaced;
-    }
-    for field in unknown.iter().filter(|field| !key.is_empty() && ABOVE_TABLES.contains(&field.name.as_str())) {
-        misplaced.fields.push(field.name.clone());
-        let written = brief(log.source().word_at(field.value_offset)).into_owned();
-        let mistake = FieldMistake::Misplaced {
-            fields: vec![field.name.clone()],
-            table: table.to_owned(),
-            home: if key == "layer" { "above the first [[layer]]" } else { "above the first line in brackets" }
-                .to_owned(),
-            write: format!("`{} = {written}` below `version`", field.name),
-        };
-        log.add(field.offset, mistake);
-    }
-    for home in HOMES.iter().filter(|home| home.key != key) {
-        let is_inside = INSIDE_LAYERS.contains(&home.key);
-        if is_inside && key != "layer" {
-            continue;
+impl Fields<'_> {
+    /// Reports the fields that belong to another table, as one mistake for each of these tables.
+    pub(super) fn misplaced(&self, log: &mut Log) -> Misplaced {
+        let mut misplaced = Misplaced { fields: Vec::new(), missing: None };
+        // The known fields themselves result from reading tables.
+        if self.values.is_empty() || log.is_describing() {
+            return misplaced;
         }
-        let belongs = |field: &str| {
-            let is_of_layers = key == "layer" && LAYER_FIELDS.iter().any(|known| known.field.name == field);
-            match name_in(home, field) {
-                Some(name) if name == field => is_inside || !is_of_layers && field != NAME,
-                Some(name) => is_inside && !has(name),
-                None => false,
+        let unknown = self.values.iter().map(|(name, value)| Unknown {
+            name: name.get_ref().clone().into_owned(),
+            offset: name.span().start,
+            value_offset: value.span().start,
+        });
+        let unknown: Vec<Unknown> = unknown.collect();
+        let has = |field: &str| self.known.iter().any(|known| known.field.name == field);
+        let (table, key) = (&self.table, self.key);
+        for field in unknown.iter().filter(|field| !key.is_empty() && ABOVE_TABLES.contains(&field.name.as_str())) {
+            misplaced.fields.push(field.name.clone());
+            let written = brief(log.source().word_at(field.value_offset)).into_owned();
+            let mistake = FieldMistake::Misplaced {
+                fields: vec![field.name.clone()],
+                table: table.clone(),
+                home: if key == "layer" { "above the first [[layer]]" } else { "above the first line in brackets" }
+                    .to_owned(),
+                write: format!("`{} = {written}` below `version`", field.name),
+            };
+            log.add(field.offset, mistake);
+        }
+        for home in HOMES.iter().filter(|home| home.key != key) {
+            let is_inside = INSIDE_LAYERS.contains(&home.key);
+            if is_inside && key != "layer" {
+                continue;
             }
-        };
-        let here: Vec<&Unknown> =
-            unknown.iter().filter(|field| belongs(&field.name) && !misplaced.contains(&field.name)).collect();
-        let Some(first) = here.iter().min_by_key(|field| field.offset) else { continue };
-        let (offset, mut here) = (first.offset, here.clone());
-        here.sort_by_key(|field| field.offset);
-        let written = |field: &&Unknown| {
-            let name = name_in(home, &field.name).unwrap_or(&field.name);
-            format!("{name} = {}", brief(log.source().word_at(field.value_offset)))
-        };
-        let written: Vec<String> = here.iter().map(written).collect();
-        let fields: Vec<String> = here.iter().map(|field| field.name.clone()).collect();
-        let (home_name, write) = if is_inside {
-            misplaced.missing = misplaced.missing.or(Some(home.key));
-            (format!("in `{}`", home.key), format!("`{} = {{ {} }}`", home.key, written.join(", ")))
-        } else {
-            let below = if fields.len() == 1 { "it" } else { "them" };
-            (format!("to [{}]", home.key), format!("{below} below a line `[{}]`", home.key))
-        };
-        misplaced.fields.extend(fields.iter().cloned());
-        log.add(offset, FieldMistake::Misplaced { fields, table: table.to_owned(), home: home_name, write });
+            let belongs = |field: &str| {
+                let is_of_layers = key == "layer" && LAYER_FIELDS.iter().any(|known| known.field.name == field);
+                match name_in(home, field) {
+                    Some(name) if name == field => is_inside || !is_of_layers && field != NAME,
+                    Some(name) => is_inside && !has(name),
+                    None => false,
+                }
+            };
+            let here: Vec<&Unknown> =
+                unknown.iter().filter(|field| belongs(&field.name) && !misplaced.contains(&field.name)).collect();
+            let Some(first) = here.iter().min_by_key(|field| field.offset) else { continue };
+            let (offset, mut here) = (first.offset, here.clone());
+            here.sort_by_key(|field| field.offset);
+            let written = |field: &&Unknown| {
+                let name = name_in(home, &field.name).unwrap_or(&field.name);
+                format!("{name} = {}", brief(log.source().word_at(field.value_offset)))
+            };
+            let written: Vec<String> = here.iter().map(written).collect();
+            let fields: Vec<String> = here.iter().map(|field| field.name.clone()).collect();
+            let (home_name, write) = if is_inside {
+                misplaced.missing = misplaced.missing.or(Some(home.key));
+                (format!("in `{}`", home.key), format!("`{} = {{ {} }}`", home.key, written.join(", ")))
+            } else {
+                let below = if fields.len() == 1 { "it" } else { "them" };
+                (format!("to [{}]", home.key), format!("{below} below a line `[{}]`", home.key))
+            };
+            misplaced.fields.extend(fields.iter().cloned());
+            log.add(offset, FieldMistake::Misplaced { fields, table: table.clone(), home: home_name, write });
+        }
+        misplaced
     }
-    misplaced
 }
 
 /// The place and the reason of a mistake that the parser found at `offset`, with advice.

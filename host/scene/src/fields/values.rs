@@ -178,7 +178,7 @@ impl<'i> Fields<'i> {
 
     /// One of some words. An unknown word is a mistake. The nearest word is then returned, so that the fields that
     /// depend on it can be read.
-    pub(crate) fn choice_or_nearest<T: Copy>(
+    pub(crate) fn choice_or_nearest<T: Clone>(
         &mut self,
         log: &mut Log,
         field: &FieldSpec,
@@ -189,13 +189,13 @@ impl<'i> Fields<'i> {
             Err(nearest) => {
                 let meant = nearest.suggestion?;
                 self.is_guess = true;
-                choices.iter().find(|(word, _)| *word == meant).map(|(_, choice)| *choice)
+                choices.iter().find(|(word, _)| *word == meant).map(|(_, choice)| choice.clone())
             }
         }
     }
 
     /// One of some words.
-    pub(crate) fn choice<T: Copy>(
+    pub(crate) fn choice<T: Clone>(
         &mut self,
         log: &mut Log,
         field: &FieldSpec,
@@ -205,7 +205,7 @@ impl<'i> Fields<'i> {
     }
 
     /// One of some words; after a mistake, the nearest ones.
-    fn word<T: Copy>(
+    fn word<T: Clone>(
         &mut self,
         log: &mut Log,
         field: &FieldSpec,
@@ -216,7 +216,7 @@ impl<'i> Fields<'i> {
         let name = field.name;
         let found = Self::text_of(log, name, &value)?;
         if let Some((_, choice)) = choices.iter().find(|(word, _)| *word == found) {
-            return Some(Ok(*choice));
+            return Some(Ok(choice.clone()));
         }
         let nearest = Nearest::new(&found, choices.iter().map(|(word, _)| *word));
         log.add(self.places.field(name), FieldMistake::UnknownChoice { field: name, found, nearest: nearest.clone() });
@@ -286,19 +286,14 @@ impl<'i> Fields<'i> {
     /// A list of texts, each with its offset.
     pub(crate) fn texts(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<(usize, String)>> {
         let list = self.list(log, field, "a list of texts in square brackets")?;
-        let texts: Vec<_> = list
-            .iter()
-            .map(|value| Self::text_of(log, field.name, value).map(|text| (value.span().start, text)))
-            .collect();
-        texts.into_iter().collect()
+        all(list.iter().map(|value| Some((value.span().start, Self::text_of(log, field.name, value)?))))
     }
 
     /// A list of numbers.
     pub(crate) fn numbers(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<f64>> {
         let Holds::Numbers(range) = field.holds else { return None };
         let list = self.list(log, field, "a list of numbers in square brackets")?;
-        let numbers: Vec<_> = list.iter().map(|value| number(log, field.name, range, value)).collect();
-        numbers.into_iter().collect()
+        all(list.iter().map(|value| number(log, field.name, range, value)))
     }
 
     /// Two numbers, the second one not below the first.
@@ -325,20 +320,16 @@ impl<'i> Fields<'i> {
         const EXPECTED: &str = "a list of pairs, [[x, y], [x, y]]";
         let Holds::Pairs(range) = field.holds else { return None };
         let list = self.list(log, field, EXPECTED)?;
-        let pairs: Vec<_> = list
-            .iter()
-            .map(|value| match value.get_ref() {
-                DeValue::Array(pair) if pair.len() == 2 => {
-                    let mut numbers = pair.iter().map(|value| number(log, field.name, range, value));
-                    numbers.next()?.zip(numbers.next()?)
-                }
-                other => {
-                    log.add(value.span().start, wrong_type(field.name, EXPECTED, other));
-                    None
-                }
-            })
-            .collect();
-        pairs.into_iter().collect()
+        all(list.iter().map(|value| match value.get_ref() {
+            DeValue::Array(pair) if pair.len() == 2 => {
+                let mut numbers = pair.iter().map(|value| number(log, field.name, range, value));
+                numbers.next()?.zip(numbers.next()?)
+            }
+            other => {
+                log.add(value.span().start, wrong_type(field.name, EXPECTED, other));
+                None
+            }
+        }))
     }
 
     fn list(&mut self, log: &mut Log, field: &FieldSpec, expected: &'static str) -> Option<DeArray<'i>> {
@@ -352,6 +343,11 @@ impl<'i> Fields<'i> {
             }
         }
     }
+}
+
+/// All values; `None` if one is missing. Every value is read, to report the mistakes of all.
+pub(crate) fn all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    values.collect::<Vec<_>>().into_iter().collect()
 }
 
 fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeValue>) -> Option<f64> {

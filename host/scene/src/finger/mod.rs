@@ -154,20 +154,26 @@ pub enum Origin {
 }
 
 impl Origin {
+    /// Each origin with its value of `origin` in a profile.
+    pub(crate) const WORDS: [(&str, Self); 4] = [
+        ("assumed", Self::Assumed),
+        ("perceptual", Self::Perceptual),
+        ("measured", Self::Measured),
+        ("empirical", Self::Empirical),
+    ];
+
     /// The value of `origin` in a profile.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Assumed => "assumed",
-            Self::Perceptual => "perceptual",
-            Self::Measured => "measured",
-            Self::Empirical => "empirical",
-        }
+    pub fn word(self) -> &'static str {
+        Self::WORDS.into_iter().find(|(_, origin)| *origin == self).map_or("", |(word, _)| word)
     }
 
     /// [`Self::newtons_suffix`] for a value of `origin`; for other words, that of an assumed profile.
     pub fn newtons_suffix_of(word: &str) -> &'static str {
-        let origins = [Self::Assumed, Self::Perceptual, Self::Measured, Self::Empirical];
-        origins.into_iter().find(|origin| origin.word() == word).unwrap_or(Self::Assumed).newtons_suffix()
+        Self::WORDS
+            .into_iter()
+            .find(|(other, _)| *other == word)
+            .map_or(Self::Assumed, |(_, origin)| origin)
+            .newtons_suffix()
     }
 
     /// Suffix for values in newtons, with a leading comma and space; empty for a measured finger. A perceptual profile
@@ -209,11 +215,6 @@ impl FingerProfile {
         write::text(self)
     }
 
-    /// The text of the bundled profile of a name, with its reasons as comments.
-    pub fn bundled_text(name: &str) -> Option<&'static str> {
-        bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name).map(|(_, text)| *text)
-    }
-
     /// The default finger of a scene.
     pub fn example() -> Self {
         bundled::EXAMPLE
@@ -228,7 +229,8 @@ impl Profile for FingerProfile {
     }
 
     fn bundled(name: &str) -> Option<Self> {
-        Self::parse(Self::bundled_text(name)?, name).ok()
+        let (_, text) = bundled::TEXTS.iter().find(|(bundled, _)| *bundled == name)?;
+        Self::parse(text, name).ok()
     }
 
     fn parse(text: &str, name: &str) -> Result<Self, CompileError> {

@@ -1,5 +1,7 @@
 //! Reads the fields of a finger profile.
 
+use std::ops::RangeInclusive;
+
 use frixel_layers::LAW_POINTS_MAX;
 
 use super::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
@@ -11,13 +13,6 @@ use crate::profile::Profile;
 use crate::tables::finger as table;
 
 const MODELS: [(&str, bool); 2] = [("winkler-fuss", false), ("soft", true)];
-const ORIGINS: [(&str, Origin); 4] = [
-    (Origin::Assumed.word(), Origin::Assumed),
-    (Origin::Perceptual.word(), Origin::Perceptual),
-    (Origin::Measured.word(), Origin::Measured),
-    (Origin::Empirical.word(), Origin::Empirical),
-];
-
 /// Reads a whole table, that of a file or `[finger]` of a scene.
 pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<FingerProfile> {
     let is_alone = !fields.has(table::FRICTION_COEFFICIENT.name);
@@ -28,7 +23,7 @@ pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Finger
     }
     let friction_coefficient = fields.number(log, &table::FRICTION_COEFFICIENT);
     let normal_load_n = fields.number(log, &table::NORMAL_LOAD_N);
-    let origin = fields.choice_or_nearest(log, &table::ORIGIN, &ORIGINS).unwrap_or(Origin::Assumed);
+    let origin = fields.choice_or_nearest(log, &table::ORIGIN, &Origin::WORDS).unwrap_or(Origin::Assumed);
     let (radius_mm, elasticity, skin_gap_um) = if origin == Origin::Empirical {
         (Some(0.0), law(&mut fields, log).map(Elasticity::Empirical), Some(0.0))
     } else {
@@ -155,14 +150,12 @@ fn not_empty(fields: &mut Fields, field: &FieldSpec, log: &mut Log) -> Option<St
 
 /// Whether a text is a date `YYYY-MM-DD`. Every month may have 31 days.
 fn is_date(text: &str) -> bool {
-    let parts: Vec<&str> = text.split('-').collect();
-    let [year, month, day] = parts.as_slice() else { return false };
-    let number = |part: &str, digits: usize| {
+    let is_number = |part: &str, digits: usize, allowed: RangeInclusive<u16>| {
         let is_plain = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());
-        is_plain.then(|| part.parse::<u16>().ok()).flatten()
+        is_plain && part.parse::<u16>().is_ok_and(|number| allowed.contains(&number))
     };
-    let (year, month, day) = (number(year, 4), number(month, 2), number(day, 2));
-    year.is_some()
-        && month.is_some_and(|month| (1..=12).contains(&month))
-        && day.is_some_and(|day| (1..=31).contains(&day))
+    match text.split('-').collect::<Vec<_>>()[..] {
+        [year, month, day] => is_number(year, 4, 0..=9_999) && is_number(month, 2, 1..=12) && is_number(day, 2, 1..=31),
+        _ => false,
+    }
 }

@@ -48,24 +48,6 @@ threshold_interval_v_rms = [19, 26]
 ";
 
 #[test]
-fn the_origins_are_read() {
-    let parse = |text: &str| FingerProfile::parse(text, "finger.toml").expect("it reads");
-    assert_eq!(parse(ASSUMED).evidence.origin(), Origin::Assumed);
-    let measured = parse(&format!("{ASSUMED}{MEASURED}"));
-    assert_eq!(measured.evidence.experiment().map(|experiment| experiment.screen.as_str()), Some("lab/tablet 3"));
-    let Evidence::Measured { voltage_max_v_rms, normal_load_range_n, .. } = measured.evidence else { panic!() };
-    assert_eq!((voltage_max_v_rms.to_bits(), normal_load_range_n), (150.0_f64.to_bits(), [0.25, 0.35]));
-    let perceptual = parse(&format!("{ASSUMED}{PERCEPTUAL}"));
-    let Evidence::Perceptual { threshold_interval_v_rms, .. } = perceptual.evidence else { panic!() };
-    assert_eq!(threshold_interval_v_rms, [19.0, 26.0]);
-    let empirical = parse(EMPIRICAL);
-    assert_eq!(empirical.evidence.origin(), Origin::Empirical);
-    let Elasticity::Empirical(law) = &empirical.elasticity else { panic!() };
-    assert_eq!((law.exponent, &law.points[..]), (2.5, &[(40.0, 0.002), (150.0, 0.06)][..]));
-    assert_eq!((law.voltage_max_v_rms(), &law.intervals_n[..]), (150.0, &[(0.001, 0.003), (0.05, 0.07)][..]));
-}
-
-#[test]
 fn a_written_profile_reads_back_the_same() {
     let empirical = FingerProfile::parse(EMPIRICAL, "finger.toml").expect("it reads");
     assert_eq!(FingerProfile::parse(&empirical.to_toml(), "finger.toml"), Ok(empirical));
@@ -103,8 +85,7 @@ proptest! {
 
 #[test]
 fn the_bundled_profiles_read_and_are_assumed() {
-    for name in FingerProfile::bundled_names() {
-        let text = FingerProfile::bundled_text(name).expect(name);
+    for (name, text) in bundled::TEXTS {
         let profile = FingerProfile::parse(text, name).expect(name);
         assert_eq!(profile.evidence, Evidence::Assumed, "{name}");
         assert!(text.starts_with("# "), "{name} does not give its reasons");

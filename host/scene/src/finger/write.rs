@@ -1,49 +1,50 @@
 //! Writes a finger profile as TOML.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use super::{Elasticity, Evidence, Experiment, FingerProfile};
+use crate::grammar::FieldSpec;
 use crate::tables::finger as table;
 
 /// The file of a profile, one field per line.
 pub(super) fn text(profile: &FingerProfile) -> String {
     let mut lines = Lines::default();
     let FingerProfile { friction_coefficient, normal_load_n, radius_mm, elasticity, skin_gap_um, evidence } = profile;
-    lines.number(table::FRICTION_COEFFICIENT.name, *friction_coefficient);
-    lines.number(table::NORMAL_LOAD_N.name, *normal_load_n);
+    lines.number(&table::FRICTION_COEFFICIENT, *friction_coefficient);
+    lines.number(&table::NORMAL_LOAD_N, *normal_load_n);
     if let Elasticity::Empirical(law) = elasticity {
-        lines.number(table::EXPONENT.name, law.exponent);
-        lines.pairs(table::POINTS.name, &law.points);
-        lines.pairs(table::INTERVALS_N.name, &law.intervals_n);
+        lines.number(&table::EXPONENT, law.exponent);
+        lines.pairs(&table::POINTS, &law.points);
+        lines.pairs(&table::INTERVALS_N, &law.intervals_n);
     } else {
-        lines.number(table::RADIUS_MM.name, *radius_mm);
+        lines.number(&table::RADIUS_MM, *radius_mm);
     }
     match *elasticity {
         Elasticity::Empirical(_) => {}
         Elasticity::WinklerFuss { stiffness_pa_per_m } => {
-            lines.number(table::STIFFNESS_PA_PER_M.name, stiffness_pa_per_m);
+            lines.number(&table::STIFFNESS_PA_PER_M, stiffness_pa_per_m);
         }
         Elasticity::Soft { modulus_pa, stress_exponent, shape_constant } => {
-            lines.text(table::MODEL.name, "soft");
-            lines.number(table::MODULUS_PA.name, modulus_pa);
-            lines.number(table::STRESS_EXPONENT.name, stress_exponent);
-            lines.number(table::SHAPE_CONSTANT.name, shape_constant);
+            lines.text(&table::MODEL, "soft");
+            lines.number(&table::MODULUS_PA, modulus_pa);
+            lines.number(&table::STRESS_EXPONENT, stress_exponent);
+            lines.number(&table::SHAPE_CONSTANT, shape_constant);
         }
     }
     if !matches!(elasticity, Elasticity::Empirical(_)) {
-        lines.number(table::SKIN_GAP_UM.name, *skin_gap_um);
+        lines.number(&table::SKIN_GAP_UM, *skin_gap_um);
     }
-    lines.text(table::ORIGIN.name, evidence.origin().word());
+    lines.text(&table::ORIGIN, evidence.origin().word());
     if let Some(Experiment { date, method, screen }) = evidence.experiment() {
-        lines.text(table::DATE.name, date);
-        lines.text(table::METHOD.name, method);
-        lines.text(table::SCREEN.name, screen);
+        lines.text(&table::DATE, date);
+        lines.text(&table::METHOD, method);
+        lines.text(&table::SCREEN, screen);
     }
     match *evidence {
         Evidence::Assumed | Evidence::Empirical { .. } => {}
         Evidence::Perceptual { threshold_v_rms, threshold_interval_v_rms, .. } => {
-            lines.number(table::THRESHOLD_V_RMS.name, threshold_v_rms);
-            lines.interval(table::THRESHOLD_INTERVAL_V_RMS.name, threshold_interval_v_rms);
+            lines.number(&table::THRESHOLD_V_RMS, threshold_v_rms);
+            lines.interval(&table::THRESHOLD_INTERVAL_V_RMS, threshold_interval_v_rms);
         }
         Evidence::Measured {
             friction_coefficient_interval,
@@ -52,10 +53,10 @@ pub(super) fn text(profile: &FingerProfile) -> String {
             normal_load_range_n,
             ..
         } => {
-            lines.interval(table::FRICTION_COEFFICIENT_INTERVAL.name, friction_coefficient_interval);
-            lines.interval(table::ELECTRIC_FRICTION_INTERVAL_N.name, electric_friction_interval_n);
-            lines.number(table::MEASURED_VOLTAGE_MAX_V_RMS.name, voltage_max_v_rms);
-            lines.interval(table::MEASURED_NORMAL_LOAD_RANGE_N.name, normal_load_range_n);
+            lines.interval(&table::FRICTION_COEFFICIENT_INTERVAL, friction_coefficient_interval);
+            lines.interval(&table::ELECTRIC_FRICTION_INTERVAL_N, electric_friction_interval_n);
+            lines.number(&table::MEASURED_VOLTAGE_MAX_V_RMS, voltage_max_v_rms);
+            lines.interval(&table::MEASURED_NORMAL_LOAD_RANGE_N, normal_load_range_n);
         }
     }
     lines.0
@@ -66,22 +67,30 @@ pub(super) fn text(profile: &FingerProfile) -> String {
 struct Lines(String);
 
 impl Lines {
-    fn number(&mut self, field: &str, number: f64) {
-        let _ = writeln!(self.0, "{field} = {}", written(number));
+    fn add(&mut self, field: &FieldSpec, value: impl Display) {
+        let _ = writeln!(self.0, "{} = {value}", field.name);
     }
 
-    fn interval(&mut self, field: &str, [low, high]: [f64; 2]) {
-        let _ = writeln!(self.0, "{field} = [{}, {}]", written(low), written(high));
+    fn number(&mut self, field: &FieldSpec, number: f64) {
+        self.add(field, written(number));
     }
 
-    fn pairs(&mut self, field: &str, pairs: &[(f64, f64)]) {
-        let pairs: Vec<String> = pairs.iter().map(|&(a, b)| format!("[{}, {}]", written(a), written(b))).collect();
-        let _ = writeln!(self.0, "{field} = [{}]", pairs.join(", "));
+    fn interval(&mut self, field: &FieldSpec, [low, high]: [f64; 2]) {
+        self.add(field, pair((low, high)));
     }
 
-    fn text(&mut self, field: &str, text: &str) {
-        let _ = writeln!(self.0, "{field} = {}", toml_edit::Value::from(text));
+    fn pairs(&mut self, field: &FieldSpec, pairs: &[(f64, f64)]) {
+        let pairs: Vec<String> = pairs.iter().copied().map(pair).collect();
+        self.add(field, format_args!("[{}]", pairs.join(", ")));
     }
+
+    fn text(&mut self, field: &FieldSpec, text: &str) {
+        self.add(field, toml_edit::Value::from(text));
+    }
+}
+
+fn pair((one, other): (f64, f64)) -> String {
+    format!("[{}, {}]", written(one), written(other))
 }
 
 /// The shortest number that reads back to the same bits.

@@ -1,26 +1,14 @@
 //! A picture.
 
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
-use frixel_layers::{Bitmap as Record, Interval, Layer as RecordLayer, Region as RecordRegion};
+use frixel_layers::Bitmap as Record;
 
 use super::constant::ConstantField;
 use super::samples::Samples;
-use super::{Extremes, Field, IntoField, LayerFields, Lowered};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Mistake, Number};
-use crate::grammar::{AmountFields, FieldSpec, Holds, LengthFields, Range};
-use crate::layer::{Amount, Layer, Region, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
+use super::*;
 use crate::picture::Ground;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, flag, layer::REGION, length, number, word};
-use crate::warning::Warning;
+use crate::tables::layer::REGION;
 
 const PICTURE: FieldSpec = FieldSpec::new(
     "picture",
@@ -100,7 +88,7 @@ impl LayerFields for Bitmap {
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         // Place and width default to those of the region.
         let mut place = |field: &LengthFields| {
-            if !fields.has_been_read(REGION.name) && !fields.has(field.px.name) {
+            if !fields.places().has(REGION.name) && !fields.has(field.px.name) {
                 fields.require_place(&field.mm);
             }
             fields.length_mm(log, field)
@@ -173,17 +161,8 @@ impl LayerFields for Bitmap {
             },
         });
         lowering.warn(layer, hidden);
-        let record = Record {
-            crc32: placed.crc32,
-            x_m: (placed.corner_mm.0 * MM) as f32,
-            y_m: (placed.corner_mm.1 * MM) as f32,
-            pitch_m: (placed.pitches_mm.0 * MM) as f32,
-            black_n: lowering.amount(layer, self.black),
-            white_n: lowering.amount(layer, self.white),
-            pitch_y_m: (placed.pitches_mm.1 * MM) as f32,
-            angle_turns: placed.angle_turns,
-            tiled: placed.tiled,
-        };
+        let (black_n, white_n) = (lowering.amount(layer, self.black), lowering.amount(layer, self.white));
+        let record = Record { black_n, white_n, ..placed.record };
         Some(Lowered { layer: RecordLayer::Bitmap(record), outline: placed.outline })
     }
 }

@@ -1,24 +1,9 @@
 //! A button: a face that fills its region, with a rim around it, and a click when the finger slides in.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
-
-use frixel_layers::{Button as Record, Click as RecordClick, Interval, Layer as RecordLayer, Region as RecordRegion};
+use frixel_layers::{Button as Record, Click as RecordClick};
 
 use super::click::Click;
-use super::{Clicked, Extremes, Field, IntoField, LayerFields, Lowered};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Mistake};
-use crate::grammar::{AmountFields, FieldSpec};
-use crate::layer::{Amount, Layer, Region, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{SIZE_MM, amount, number};
-use crate::warning::Warning;
+use super::*;
 
 const RIM_WIDTH: FieldSpec = number(
     "rim_width_mm",
@@ -85,23 +70,18 @@ impl LayerFields for Button {
 
 impl IntoField for Record {
     fn field(&self, region: RecordRegion, _program: &Program) -> Arc<dyn Field> {
-        let (x_m, y_m, width_m, height_m, is_ellipse) = match region {
-            RecordRegion::Rectangle { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, false),
-            RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m, true),
-            RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN, false),
+        let (x_m, y_m, width_m, height_m) = match region {
+            RecordRegion::Rectangle { x_m, y_m, width_m, height_m }
+            | RecordRegion::Ellipse { x_m, y_m, width_m, height_m } => (x_m, y_m, width_m, height_m),
+            RecordRegion::Screen | RecordRegion::Polygon { .. } => (f32::NAN, f32::NAN, f32::NAN, f32::NAN),
         };
-        let (left_m, top_m) = (f64::from(x_m), f64::from(y_m));
+        let outline = Cell::of_region(x_m, y_m, width_m, height_m);
         let half_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
         Arc::new(ButtonField {
-            outline: Cell {
-                left_m,
-                top_m,
-                right_m: left_m + f64::from(width_m),
-                bottom_m: top_m + f64::from(height_m),
-            },
-            middle_m: (left_m + half_m.0, top_m + half_m.1),
+            outline,
+            middle_m: (outline.left_m + half_m.0, outline.top_m + half_m.1),
             half_m,
-            is_ellipse,
+            is_ellipse: matches!(region, RecordRegion::Ellipse { .. }),
             rim_width_m: f64::from(self.rim_width_m),
             rim_n: f64::from(self.rim_n),
             face_n: f64::from(self.face_n),

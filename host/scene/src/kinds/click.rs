@@ -1,14 +1,8 @@
 //! The fields of a click, and its compilation.
 
-use frixel_layers::{CLICKS_MAX, Click as Record, range};
+use frixel_layers::{CLICKS_MAX, Click as Record};
 
-use crate::fields::Fields;
-use crate::grammar::Absence::Number;
-use crate::grammar::{AmountFields, FieldSpec, Range};
-use crate::layer::{Amount, Layer, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::tables::number;
+use super::*;
 
 const CLICK_MS: FieldSpec = number(
     "click_ms",

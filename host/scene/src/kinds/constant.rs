@@ -1,20 +1,8 @@
 //! The same friction everywhere.
 
-use std::sync::Arc;
+use frixel_layers::Constant as Record;
 
-use frixel_layers::{Constant as Record, Layer as RecordLayer, Region as RecordRegion};
-
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::Mistake;
-use crate::grammar::AmountFields;
-use crate::layer::{Amount, Layer, Unit};
-use crate::log::Log;
-use crate::lower::Lowering;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::amount;
+use super::*;
 
 const FRICTION: AmountFields = amount!("friction", Mistake, "the same friction everywhere");
 

@@ -1,21 +1,8 @@
 //! Friction that depends on the direction of the slide.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use frixel_layers::Direction as Record;
 
-use frixel_layers::{Direction as Record, Layer as RecordLayer, Region as RecordRegion};
-
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::{Mistake, Number};
-use crate::grammar::{AmountFields, FieldSpec};
-use crate::layer::{Amount, Layer, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, place};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{ANGLE_DEG, amount, number};
+use super::*;
 
 const ANGLE: FieldSpec =
     number("angle_deg", ANGLE_DEG, Number(0.0), "direction of the axis: 0 points to the right, 90 down");

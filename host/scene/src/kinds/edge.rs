@@ -1,26 +1,9 @@
 //! A line with a ridge or a well along it, and a click when the finger crosses it.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
-
-use frixel_layers::{
-    Blend, Click as RecordClick, Edge as Record, Interval, Layer as RecordLayer, Region as RecordRegion,
-};
+use frixel_layers::{Click as RecordClick, Edge as Record};
 
 use super::click::Click;
-use super::{Clicked, Extremes, Field, IntoField, LayerFields, Lowered, click_interval};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Mistake, Number};
-use crate::grammar::{AmountFields, FieldSpec, LengthFields};
-use crate::layer::{Amount, Layer, Rectangle, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM, place};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{ANGLE_DEG, PLACE_MM, SIZE_MM, amount, length, number};
-use crate::warning::Warning;
+use super::*;
 
 const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of a place on the line");
 const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the same place");

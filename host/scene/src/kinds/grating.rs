@@ -1,22 +1,9 @@
 //! Parallel stripes.
 
-use std::sync::Arc;
+use frixel_layers::Grating as Record;
 
-use frixel_layers::{Grating as Record, Interval, Layer as RecordLayer, Region as RecordRegion, Wave};
-
-use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, LayerFields, Lowered, drift};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Mistake, Number};
-use crate::grammar::FieldSpec;
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM, place};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{ANGLE_DEG, HIGH, LOW, WAVELENGTH_MM, number, word};
+use super::wave::WaveField;
+use super::*;
 
 const WAVELENGTH: FieldSpec = number("wavelength_mm", WAVELENGTH_MM, Mistake, "from stripe to stripe");
 const ANGLE: FieldSpec = number("angle_deg", ANGLE_DEG, Number(0.0), "direction across the stripes");
@@ -65,15 +52,10 @@ impl LayerFields for Grating {
         let phase_deg = fields.angle_deg(log, &PHASE);
         let origins = [("screen", Origin::Screen), ("region", Origin::Region)];
         let origin = fields.choice(log, &ORIGIN, &origins).unwrap_or(Origin::Screen);
-        let drift_mm_per_s = drift::read(fields, log);
+        let drift_mm_per_s = drift::read(fields, wavelength_mm, log);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         let (wavelength_mm, amounts) = (wavelength_mm?, amounts?);
         Some(Self { wave, wavelength_mm, angle_deg, phase_deg, origin, drift_mm_per_s, amounts })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        drift::check(self.drift_mm_per_s, self.wavelength_mm, places, log);
-        self.amounts.check(places, log);
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

@@ -2,6 +2,8 @@
 //! reference. The reference follows the kind's definition in `docs/design/scenes.md` and `PROTOCOL.md`, and shares no
 //! code with the board.
 
+#![allow(clippy::wildcard_imports, reason = "every kind is written with the same words")]
+
 mod bitmap;
 mod button;
 mod click;
@@ -19,19 +21,25 @@ mod stream;
 mod vibration;
 mod wave;
 
+use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use frixel_layers::{Blend, Click, Interval, Layer as Record, Region as RecordRegion};
+use frixel_layers::{Blend, Click, Interval, Layer as RecordLayer, Region as RecordRegion, Wave, range};
 
 use crate::cover::Cell;
 use crate::fields::Fields;
-use crate::layer::{Layer, LowHigh, Region, Unit};
+use crate::grammar::Absence::{Means, Mistake, Number};
+use crate::grammar::{AmountFields, FieldSpec, Holds, LengthFields, Range};
+use crate::layer::{Amount, Layer, LowHigh, Rectangle, Region, Unit};
 use crate::log::Log;
-use crate::lower::Lowering;
+use crate::lower::{Lowering, MM, place};
+use crate::mistake::FieldMistake;
 use crate::program::Program;
 use crate::reference::Context;
 use crate::source::Places;
+use crate::tables::{ANGLE_DEG, HIGH, LOW, PLACE_MM, SIZE_MM, WAVELENGTH_MM, amount, flag, length, number, word};
+use crate::warning::Warning;
 
 pub(crate) use bitmap::{Bitmap, Levels, PITCH_MM};
 
@@ -49,24 +57,19 @@ pub(crate) trait LayerFields: Sized {
     /// Whether frictions of a layer that replaces others default to totals.
     const TOTALS: bool = false;
 
-    /// Reads the fields of the kind.
+    /// Reads the fields of the kind, and reports mistakes between them.
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self>;
-
-    /// Reports mistakes between fields.
-    fn check(&self, places: &Places, log: &mut Log) {
-        let _ = (places, log);
-    }
 
     /// Name of the field that sets the largest or the least friction of a record's layer. By default, the fields of the
     /// largest and the least amount.
-    fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
+    fn extreme(&self, most: bool, places: &Places, record: &RecordLayer) -> &'static str {
         let _ = record;
         LowHigh::extreme(most, places)
     }
 
     /// The fields that a click of the record's layer is added to, each with its friction, and the field of the click.
     /// `None` for a kind without clicks.
-    fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
+    fn clicked(&self, places: &Places, record: &RecordLayer) -> Option<Clicked> {
         let _ = (places, record);
         None
     }
@@ -95,13 +98,13 @@ pub(crate) struct Clicked {
 
 /// The compiled form of a layer's fields.
 pub(crate) struct Lowered {
-    pub(crate) layer: Record,
+    pub(crate) layer: RecordLayer,
     /// Where the layer acts if the file names no region: `None` for the whole screen.
     pub(crate) outline: Option<Region>,
 }
 
-impl From<Record> for Lowered {
-    fn from(layer: Record) -> Self {
+impl From<RecordLayer> for Lowered {
+    fn from(layer: RecordLayer) -> Self {
         Self { layer, outline: None }
     }
 }
@@ -238,18 +241,13 @@ macro_rules! kinds {
                 match self { $( Self::$kind(_) => <$module::$kind as LayerFields>::WORD, )* }
             }
 
-            /// Reports mistakes between fields.
-            pub(crate) fn check(&self, places: &Places, log: &mut Log) {
-                match self { $( Self::$kind(kind) => LayerFields::check(kind, places, log), )* }
-            }
-
             /// Name of the field that sets the largest or the least friction of a record's layer.
-            pub(crate) fn extreme(&self, most: bool, places: &Places, record: &Record) -> &'static str {
+            pub(crate) fn extreme(&self, most: bool, places: &Places, record: &RecordLayer) -> &'static str {
                 match self { $( Self::$kind(kind) => LayerFields::extreme(kind, most, places, record), )* }
             }
 
             /// The fields that a click of the record's layer is added to; `None` without clicks.
-            pub(crate) fn clicked(&self, places: &Places, record: &Record) -> Option<Clicked> {
+            pub(crate) fn clicked(&self, places: &Places, record: &RecordLayer) -> Option<Clicked> {
                 match self { $( Self::$kind(kind) => LayerFields::clicked(kind, places, record), )* }
             }
 
@@ -265,16 +263,16 @@ macro_rules! kinds {
         }
 
         /// The reference of a record's layer.
-        pub(crate) fn field(layer: &Record, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
+        pub(crate) fn field(layer: &RecordLayer, region: RecordRegion, program: &Program) -> Arc<dyn Field> {
             match layer {
-                $( Record::$kind(layer) => IntoField::field(layer, region, program), )*
+                $( RecordLayer::$kind(layer) => IntoField::field(layer, region, program), )*
             }
         }
 
         /// A record without place and rotation: identical for a layer and its copies.
-        pub fn without_place(layer: Record) -> Record {
+        pub fn without_place(layer: RecordLayer) -> RecordLayer {
             match layer {
-                $( Record::$kind(layer) => Record::$kind(IntoField::without_place(layer)), )*
+                $( RecordLayer::$kind(layer) => RecordLayer::$kind(IntoField::without_place(layer)), )*
             }
         }
     };

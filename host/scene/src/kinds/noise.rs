@@ -1,31 +1,17 @@
 //! Band-limited noise: the mean of eight cosine waves drawn from a seed.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use frixel_layers::{NOISES_MAX, Noise as Record};
 
-use frixel_layers::{Layer as RecordLayer, NOISES_MAX, Noise as Record, Region as RecordRegion};
-
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::{Mistake as Required, Number};
-use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::mistake::FieldMistake;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{WAVELENGTH_MM, amount, number};
+use super::*;
 
 const SEED: FieldSpec =
     FieldSpec::new("seed", Holds::Whole(Range::new(0.0, 4_294_967_295.0, "")), Number(0.0), "seed of the random waves");
-const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Required, "shortest wavelength");
-const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Required, "longest wavelength");
-const LOW: AmountFields = amount!("low", Required, "least friction");
+const MIN: FieldSpec = number("wavelength_min_mm", WAVELENGTH_MM, Mistake, "shortest wavelength");
+const MAX: FieldSpec = number("wavelength_max_mm", WAVELENGTH_MM, Mistake, "longest wavelength");
+const LOW: AmountFields = amount!("low", Mistake, "least friction");
 const HIGH: AmountFields = amount!(
     "high",
-    Required,
+    Mistake,
     "largest friction. Noise is mostly near the middle: its standard deviation is an eighth of the range"
 );
 
@@ -46,21 +32,12 @@ impl LayerFields for Noise {
         let wavelength_min_mm = fields.number(log, &MIN);
         let wavelength_max_mm = fields.number(log, &MAX);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
-        Some(Self {
-            seed,
-            wavelength_min_mm: wavelength_min_mm?,
-            wavelength_max_mm: wavelength_max_mm?,
-            amounts: amounts?,
-        })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        self.amounts.check(places, log);
-        let (low, high) = (self.wavelength_min_mm, self.wavelength_max_mm);
+        let (low, high) = (wavelength_min_mm?, wavelength_max_mm?);
         if low > high {
             let (low_name, high_name) = (MIN.name, MAX.name);
-            log.add(places.field(low_name), FieldMistake::LowAboveHigh { low_name, low, high_name, high });
+            log.add(fields.places().field(low_name), FieldMistake::LowAboveHigh { low_name, low, high_name, high });
         }
+        Some(Self { seed, wavelength_min_mm: low, wavelength_max_mm: high, amounts: amounts? })
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

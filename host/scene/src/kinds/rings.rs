@@ -1,22 +1,9 @@
 //! Rings around a centre.
 
-use std::sync::Arc;
+use frixel_layers::Rings as Record;
 
-use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Rings as Record, Wave};
-
-use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, LayerFields, Lowered, drift};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::Mistake;
-use crate::grammar::{FieldSpec, LengthFields};
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{HIGH, LOW, PLACE_MM, WAVELENGTH_MM, length, number};
+use super::wave::WaveField;
+use super::*;
 
 const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of the middle");
 const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the middle");
@@ -42,15 +29,10 @@ impl LayerFields for Rings {
         let x_mm = fields.length_mm(log, &X);
         let y_mm = fields.length_mm(log, &Y);
         let wavelength_mm = fields.number(log, &WAVELENGTH);
-        let drift_mm_per_s = drift::read(fields, log);
+        let drift_mm_per_s = drift::read(fields, wavelength_mm, log);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         let (x_mm, y_mm, wavelength_mm) = (x_mm?, y_mm?, wavelength_mm?);
         Some(Self { wave, x_mm, y_mm, wavelength_mm, drift_mm_per_s, amounts: amounts? })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        drift::check(self.drift_mm_per_s, self.wavelength_mm, places, log);
-        self.amounts.check(places, log);
     }
 
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {

@@ -1,33 +1,21 @@
 //! A curve over sliding speed: a factor on the friction of the layers below.
 
-use std::sync::Arc;
-
-use frixel_layers::{Blend, Layer as RecordLayer, Point, Region as RecordRegion, Speed as Record, range};
+use frixel_layers::{Point, Speed as Record};
 use frixel_wire::scene::CURVE_POINTS_MAX;
 
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::Mistake as Required;
-use crate::grammar::{FieldSpec, Holds, Range};
-use crate::layer::{Layer, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::mistake::FieldMistake;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
+use super::*;
 use crate::tables::FACTOR;
 
 const SPEEDS: FieldSpec = FieldSpec::new(
     "speeds_mm_per_s",
     Holds::Numbers(Range::new(range::SPEED_M_PER_S.min, range::SPEED_M_PER_S.max / MM, " mm/s")),
-    Required,
+    Mistake,
     "2 to 16 speeds in ascending order",
 );
 const FACTORS: FieldSpec = FieldSpec::new(
     "factors",
     Holds::Numbers(FACTOR),
-    Required,
+    Mistake,
     "the factor at each speed: linear between speeds, constant outside",
 );
 /// Smallest spacing of two speeds: twice the board's resolution, so that rounding never makes them too close.

@@ -1,23 +1,9 @@
 //! Spokes around a centre.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use frixel_layers::Spokes as Record;
 
-use frixel_layers::{Interval, Layer as RecordLayer, Region as RecordRegion, Spokes as Record, Wave};
-
-use super::wave::{self, WaveField};
-use super::{Extremes, Field, IntoField, LayerFields, Lowered};
-use crate::cover::Cell;
-use crate::fields::Fields;
-use crate::grammar::Absence::{Mistake, Number};
-use crate::grammar::{FieldSpec, Holds, LengthFields, Range};
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{ANGLE_DEG, HIGH, LOW, PLACE_MM, length, number};
+use super::wave::WaveField;
+use super::*;
 
 const X: LengthFields = length!("x", X, PLACE_MM, Mistake, "x of the middle");
 const Y: LengthFields = length!("y", Y, PLACE_MM, Mistake, "y of the middle");
@@ -55,10 +41,6 @@ impl LayerFields for Spokes {
         let angle_deg = fields.angle_deg(log, &ANGLE);
         let amounts = LowHigh::read(fields, [&LOW, &HIGH], unit, log);
         Some(Self { wave, x_mm: x_mm?, y_mm: y_mm?, number: number?, angle_deg, amounts: amounts? })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        self.amounts.check(places, log);
     }
 
     fn move_by(&mut self, x_mm: f64, y_mm: f64) {

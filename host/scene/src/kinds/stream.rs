@@ -1,20 +1,8 @@
 //! Friction that the host streams while the scene plays.
 
-use std::sync::Arc;
+use frixel_layers::Stream as Record;
 
-use frixel_layers::{Layer as RecordLayer, Region as RecordRegion, Stream as Record};
-
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::Mistake;
-use crate::grammar::AmountFields;
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::Lowering;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::amount;
+use super::*;
 
 const LOW: AmountFields = amount!("low", Mistake, "friction of sample 0");
 const HIGH: AmountFields = amount!("high", Mistake, "friction of the largest sample");
@@ -30,10 +18,6 @@ impl LayerFields for Stream {
 
     fn read(fields: &mut Fields, unit: Unit, log: &mut Log) -> Option<Self> {
         Some(Self { amounts: LowHigh::read(fields, [&LOW, &HIGH], unit, log)? })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        self.amounts.check(places, log);
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

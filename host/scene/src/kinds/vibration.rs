@@ -1,34 +1,18 @@
 //! Friction that changes with time.
 
-use std::f64::consts::TAU;
-use std::sync::Arc;
+use frixel_layers::{Beat, Burst as RecordBurst, Vibration as Record};
 
-use frixel_layers::{
-    Beat, Burst as RecordBurst, Layer as RecordLayer, Region as RecordRegion, Vibration as Record, range,
-};
-
-use super::{Field, IntoField, LayerFields, Lowered};
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Mistake as Required, Number};
-use crate::grammar::{AmountFields, FieldSpec, Holds, Range};
-use crate::layer::{Layer, LowHigh, Unit};
-use crate::log::Log;
-use crate::lower::{Lowering, MM};
-use crate::mistake::FieldMistake;
-use crate::program::Program;
-use crate::reference::Context;
-use crate::source::Places;
-use crate::tables::{LOW, amount, number, word};
+use super::*;
 
 const WAVE: FieldSpec = word("wave", Means("`\"sine\"`"), "`\"sine\"` or `\"square\"`");
 const FREQUENCY: FieldSpec = number(
     "frequency_hz",
     Range::new(range::FREQUENCY_HZ.min, range::FREQUENCY_HZ.max, " Hz"),
-    Required,
+    Mistake,
     "repetitions per second",
 );
 const HIGH: AmountFields =
-    amount!("high", Required, "largest friction; a sine starts in the middle and rises, a square starts high");
+    amount!("high", Mistake, "largest friction; a sine starts in the middle and rises, a square starts high");
 const BURST: FieldSpec = FieldSpec::new(
     "burst",
     Holds::Table,
@@ -36,8 +20,8 @@ const BURST: FieldSpec = FieldSpec::new(
     "repeated bursts: `{ period_ms, on_ms, ramp_ms }`, see [bursts](#bursts)",
 );
 const BURST_MS: Range = Range::new(1.0, range::BURST_S.max / MM, " ms");
-const PERIOD: FieldSpec = number("period_ms", BURST_MS, Required, "from the start of a burst to the next one");
-const ON: FieldSpec = number("on_ms", BURST_MS, Required, "duration of a burst; at most the period");
+const PERIOD: FieldSpec = number("period_ms", BURST_MS, Mistake, "from the start of a burst to the next one");
+const ON: FieldSpec = number("on_ms", BURST_MS, Mistake, "duration of a burst; at most the period");
 const RAMP: FieldSpec = number(
     "ramp_ms",
     Range::new(0.0, 0.5 * BURST_MS.max, " ms"),
@@ -76,10 +60,6 @@ impl LayerFields for Vibration {
             return None;
         }
         Some(Self { beat, frequency_hz: frequency_hz?, amounts: amounts?, burst })
-    }
-
-    fn check(&self, places: &Places, log: &mut Log) {
-        self.amounts.check(places, log);
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {

@@ -1,14 +1,6 @@
 //! The fields of a periodic wave, and its reference.
 
-use std::f64::consts::TAU;
-
-use frixel_layers::{Interval, Wave, range};
-
-use crate::fields::Fields;
-use crate::grammar::Absence::{Means, Number};
-use crate::grammar::{FieldSpec, Range};
-use crate::log::Log;
-use crate::tables::{number, word};
+use super::*;
 
 const WAVE: FieldSpec = word(
     "wave",

@@ -68,25 +68,22 @@ pub(crate) struct LowHigh {
 }
 
 impl LowHigh {
-    /// Reads both.
+    /// Reads both, and reports a mistake if the least amount is above the largest.
     pub(crate) fn read(
         fields: &mut Fields,
         [low, high]: [&AmountFields; 2],
         unit: Unit,
         log: &mut Log,
     ) -> Option<Self> {
-        let low = Amount::read(fields, low, unit, log);
-        let high = Amount::read(fields, high, unit, log);
-        Some(Self { low: low?, high: high? })
-    }
-
-    /// Reports a mistake if the least amount is above the largest.
-    pub(crate) fn check(self, places: &Places, log: &mut Log) {
-        if self.low.is_above(self.high) {
-            let (low_name, high_name) = (places.first_of(LOW.names()), places.first_of(HIGH.names()));
-            let (low, high) = (self.low.number(), self.high.number());
+        let read = [low, high].map(|amount| Amount::read(fields, amount, unit, log));
+        let [Some(least), Some(largest)] = read else { return None };
+        if least.is_above(largest) {
+            let places = fields.places();
+            let (low_name, high_name) = (places.first_of(low.names()), places.first_of(high.names()));
+            let (low, high) = (least.number(), largest.number());
             log.add(places.field(low_name), FieldMistake::LowAboveHigh { low_name, low, high_name, high });
         }
+        Some(Self { low: least, high: largest })
     }
 
     /// The field of the largest amount, or of the least.

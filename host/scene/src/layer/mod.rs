@@ -83,7 +83,6 @@ impl Layer {
         let above = above.unwrap_or(if is_total { Above::Zero } else { Above::Natural });
         let region = region.ok()?;
         let kind = kind?;
-        kind.check(&places, log);
         let (family, is_copy) = (None, false);
         let layer = Self {
             title,

@@ -1,5 +1,7 @@
 //! `region`: the part of the screen where a layer acts.
 
+use frixel_layers::Interval;
+
 use super::super::fields::Fields;
 use super::super::log::Log;
 use super::super::mistake::FieldMistake;
@@ -59,12 +61,9 @@ impl Region {
 impl Rectangle {
     /// The smallest rectangle around some places, mm.
     pub(crate) fn around(places: &[(f64, f64)]) -> Self {
-        let limits = |of: fn(&(f64, f64)) -> f64| {
-            let (least, most) = (f64::INFINITY, f64::NEG_INFINITY);
-            places.iter().map(of).fold((least, most), |(least, most), place| (least.min(place), most.max(place)))
-        };
-        let ((left, right), (top, bottom)) = (limits(|(x_mm, _)| *x_mm), limits(|(_, y_mm)| *y_mm));
-        Self { x_mm: left, y_mm: top, width_mm: right - left, height_mm: bottom - top }
+        let x = Interval::of(places.iter().map(|(x_mm, _)| *x_mm));
+        let y = Interval::of(places.iter().map(|(_, y_mm)| *y_mm));
+        Self { x_mm: x.low, y_mm: y.low, width_mm: x.high - x.low, height_mm: y.high - y.low }
     }
 }
 

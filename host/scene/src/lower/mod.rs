@@ -48,7 +48,7 @@ impl<'a, 's> Lowering<'a, 's> {
 
     /// The points and bitmaps that records refer to.
     pub(super) fn finish(self) -> (Vec<Point>, Vec<Bitmap>) {
-        (self.points, self.pool.finish())
+        (self.points, self.pool.bitmaps)
     }
 
     /// Number of mistakes so far.
@@ -90,9 +90,8 @@ impl<'a, 's> Lowering<'a, 's> {
         bitmap: &BitmapWords,
         visible: Option<Rectangle>,
     ) -> Option<Placed> {
-        let screen = (self.scene.screen().width_mm, self.scene.screen().height_mm);
         let picture = layer.places.field("picture");
-        match self.pool.place(layer, bitmap, visible, screen, self.log) {
+        match self.pool.place(layer, bitmap, visible, self.log) {
             Ok(placed) => Some(placed),
             Err(Unplaced::Reported) => None,
             Err(Unplaced::Unusable(mistake)) => {
@@ -107,7 +106,7 @@ impl<'a, 's> Lowering<'a, 's> {
                 (0..COARSER_MAX).find_map(|_| {
                     coarser.pitch_mm = Some(pitch_mm);
                     pitch_mm *= 2.0;
-                    self.pool.place(layer, &coarser, visible, screen, self.log).ok()
+                    self.pool.place(layer, &coarser, visible, self.log).ok()
                 })
             }
         }

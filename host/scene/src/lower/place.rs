@@ -14,9 +14,14 @@ const OFF_SCREEN_MM: f64 = 1e-6;
 /// Cycles per metre along x and y; exact for right angles.
 pub(crate) fn wave_vector(wavelength_mm: f64, angle_deg: f64) -> (f32, f32) {
     let cycles_per_m = 1.0 / (wavelength_mm * MM);
-    let angle = angle_deg.to_radians();
+    let (cos, sin) = direction(angle_deg);
+    ((cycles_per_m * cos) as f32, (cycles_per_m * sin) as f32)
+}
+
+/// Cosine and sine of an angle; exact for right angles.
+pub(crate) fn direction(angle_deg: f64) -> (f64, f64) {
     let exact = |part: f64| if part.abs() < 1e-12 { 0.0 } else { part };
-    ((cycles_per_m * exact(libm::cos(angle))) as f32, (cycles_per_m * exact(libm::sin(angle))) as f32)
+    (exact(libm::cos(angle_deg.to_radians())), exact(libm::sin(angle_deg.to_radians())))
 }
 
 /// An angle in turns.

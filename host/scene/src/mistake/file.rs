@@ -4,13 +4,13 @@ use thiserror::Error;
 
 use super::{SLASH_ADVICE, TILDE_ADVICE};
 use crate::file::VERSION;
+use crate::files::{FileUnavailable, file_name};
 use crate::nearest::Nearest;
 use crate::printable::{Shown, brief};
 
 /// A mistake of a whole file, or between the files of a scene.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FileMistake {
+pub(crate) enum FileMistake {
     /// The bytes are not UTF-8.
     #[error("this byte is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
@@ -22,104 +22,44 @@ pub enum FileMistake {
         "this scene file has version {}, and this frixel reads version {VERSION}: use a version that supports it",
         Shown(*.found)
     )]
-    Version {
-        /// The version, as written.
-        found: f64,
-    },
+    Version { found: f64 },
     /// No screen or finger of this name is bundled.
     #[error(
         "there is no bundled {what} \"{}\", and a file name needs an extension such as .toml; {nearest}",
         brief(.found)
     )]
-    UnknownProfile {
-        /// `finger` or `screen`.
-        what: &'static str,
-        /// The name, as written.
-        found: String,
-        /// The bundled names, and the nearest one.
-        nearest: Nearest,
-    },
+    UnknownProfile { what: &'static str, found: String, nearest: Nearest },
     /// There are more entries than the limit.
     #[error("there are {found} {what}, and at most {max} are read: {advice}")]
-    TooMuch {
-        /// The counted entries.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// The limit.
-        max: usize,
-        /// What to do.
-        advice: &'static str,
-    },
+    TooMuch { what: &'static str, found: usize, max: usize, advice: &'static str },
     /// Files include each other in a cycle.
     #[error("{}: remove {}", in_circle(.circle), if .circle.len() == 1 { "it" } else { "one of them" })]
-    IncludedByItself {
-        /// The files: each includes the next one, and the last includes the first.
-        circle: Vec<String>,
-    },
+    IncludedByItself { circle: Vec<String> },
     /// A scene has too many files.
     #[error("a scene has at most {max} files, and this is one too many: merge some of them")]
-    TooManyFiles {
-        /// The limit.
-        max: usize,
-    },
+    TooManyFiles { max: usize },
     /// A file is included by two files, or twice by one.
     #[error(
         "{included} is included {}: a scene includes each file once, so leave one of them out",
         if .file == .other { format!("twice by {file}") } else { format!("by {file} and by {other}") }
     )]
-    IncludedTwice {
-        /// The file with this `include`.
-        file: String,
-        /// The included file.
-        included: String,
-        /// The file that includes it already.
-        other: String,
-    },
+    IncludedTwice { file: String, included: String, other: String },
     /// An included file is missing.
     #[error(
         "{file} includes {}, which was not found: names start from the folder of {file}{}",
         brief(.included),
         did_you_mean(.nearest.as_deref())
     )]
-    IncludedMissing {
-        /// The file with this `include`.
-        file: String,
-        /// The file that it includes.
-        included: String,
-        /// The most similar name in that place, if there is one.
-        nearest: Option<String>,
-    },
+    IncludedMissing { file: String, included: String, nearest: Option<String> },
     /// An included file cannot be used.
     #[error("{file} includes {}, which cannot be used: {reason}", brief(.included))]
-    IncludedUnusable {
-        /// The file with this `include`.
-        file: String,
-        /// The file that it includes.
-        included: String,
-        /// The reason, and what to do.
-        reason: String,
-    },
+    IncludedUnusable { file: String, included: String, reason: String },
     /// Two files of a scene have the same table.
     #[error("`{field}` is in both {file} and {other}: a scene has only one, so remove one of them")]
-    TableTwice {
-        /// The table.
-        field: &'static str,
-        /// The file with this table.
-        file: String,
-        /// Another file that has it.
-        other: String,
-    },
+    TableTwice { field: &'static str, file: String, other: String },
     /// Layers of two files have the same name.
     #[error("a layer \"{name}\" is in {file} and in {other}: rename one of them")]
-    NameTwice {
-        /// The name.
-        name: String,
-        /// The file with this layer.
-        file: String,
-        /// Another file that has a layer of this name.
-        other: String,
-    },
+    NameTwice { name: String, file: String, other: String },
     /// A file is missing.
     #[error(
         "{what} \"{}\" was not found in {}{}: {}",
@@ -128,37 +68,32 @@ pub enum FileMistake {
         which_has(.nearest.as_deref()),
         missing_advice(.file)
     )]
-    FileMissing {
-        /// `picture`, `finger` or `screen`.
-        what: &'static str,
-        /// The file's name, as written.
-        file: String,
-        /// The place that was searched.
-        folder: String,
-        /// The most similar name in that place, if there is one.
-        nearest: Option<String>,
-    },
+    FileMissing { what: &'static str, file: String, folder: String, nearest: Option<String> },
     /// The name of a file is empty.
     #[error("`{field}` names no file: write its name between the quotation marks")]
-    NoFileName {
-        /// The field.
-        field: &'static str,
-    },
+    NoFileName { field: &'static str },
     /// A file cannot be used.
     #[error("{what} \"{}\" cannot be used: {reason}", brief(.file))]
-    FileUnusable {
-        /// `picture`, `finger` or `screen`.
-        what: &'static str,
-        /// The file's name, as written.
-        file: String,
-        /// The reason, and what to do.
-        reason: String,
-    },
+    FileUnusable { what: &'static str, file: String, reason: String },
 }
 
 impl FileMistake {
     pub(crate) fn too_much(what: &'static str, found: usize, max: usize, advice: &'static str) -> Self {
         Self::TooMuch { what, found, max, advice }
+    }
+
+    /// A file that is not available: a `picture`, `finger` or `screen`.
+    pub(crate) fn unavailable(what: &'static str, name: &str, unavailable: &FileUnavailable) -> Self {
+        let file = name.to_owned();
+        match unavailable {
+            FileUnavailable::Unreadable { reason } => {
+                Self::FileUnusable { what, file, reason: format!("it cannot be read ({reason})") }
+            }
+            FileUnavailable::Missing { place, files } => {
+                let nearest = Nearest::file(file_name(name), files);
+                Self::FileMissing { what, file, folder: place.clone(), nearest }
+            }
+        }
     }
 }
 

@@ -8,9 +8,9 @@ use thiserror::Error;
 
 use crate::printable::brief;
 
-pub use field::FieldMistake;
-pub use file::FileMistake;
-pub use fit::FitMistake;
+pub(crate) use field::FieldMistake;
+pub(crate) use file::FileMistake;
+pub(crate) use fit::FitMistake;
 
 /// Advice for a path that starts with a tilde.
 pub const TILDE_ADVICE: &str = "only a shell expands `~`, so write your home folder's path in full";
@@ -20,8 +20,7 @@ pub(crate) const SLASH_ADVICE: &str = "write / instead of \\ between the parts o
 
 /// A mistake in a scene file. Its text is one sentence for the person who wrote the file.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum Mistake {
+pub(crate) enum Mistake {
     /// In a field, or between fields of a table.
     #[error(transparent)]
     Field(#[from] FieldMistake),
@@ -40,42 +39,24 @@ pub enum Mistake {
     #[error(
         "`after = \"{}\"` names neither a command nor a fault: give one of them this `name`", brief(.found)
     )]
-    UnknownEvent {
-        /// The name, as written.
-        found: String,
-    },
+    UnknownEvent { found: String },
     /// Two commands or faults of a scenario share a name.
     #[error("`name = \"{}\"` is already used on line {line}: choose another name", brief(.name))]
-    NameTwice {
-        /// The name.
-        name: String,
-        /// The line of the first use.
-        line: usize,
-    },
+    NameTwice { name: String, line: usize },
     /// An expectation of a scenario ends before it begins.
     #[error("`to_ms = {to_ms}` is before `from_ms = {from_ms}`: give a later end, or an earlier beginning")]
-    EndsBeforeStart {
-        /// First time, in ms.
-        from_ms: f64,
-        /// Last time, in ms.
-        to_ms: f64,
-    },
+    EndsBeforeStart { from_ms: f64, to_ms: f64 },
     /// A command or a fault of a scenario begins after the scenario's end.
     #[error(
         "`at_ms = {at_ms}` is after the end of the scenario, which runs for {seconds} s: raise `seconds`, \
          or begin earlier"
     )]
-    AfterEnd {
-        /// When it begins, in ms since the start.
-        at_ms: f64,
-        /// How long the scenario runs, in s.
-        seconds: f64,
-    },
+    AfterEnd { at_ms: f64, seconds: f64 },
 }
 
 impl Mistake {
     /// The valid name most similar to an unknown one, if one is similar enough.
-    pub fn nearest(&self) -> Option<&str> {
+    pub(crate) fn nearest(&self) -> Option<&str> {
         match self {
             Self::Field(FieldMistake::UnknownField { nearest, .. } | FieldMistake::UnknownChoice { nearest, .. })
             | Self::File(FileMistake::UnknownProfile { nearest, .. }) => nearest.suggestion.as_deref(),

@@ -1,18 +1,15 @@
 //! The shapes of regions.
 
-use frixel_layers::{Point, Region};
+use frixel_layers::{Interval, Point, Region};
+
+use crate::cover::Cell;
 
 /// The shape of a layer's region, m.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Everywhere,
     /// Includes its left and top edges, excludes its right and bottom edges.
-    Rectangle {
-        left_m: f64,
-        top_m: f64,
-        right_m: f64,
-        bottom_m: f64,
-    },
+    Rectangle(Cell),
     /// Includes its border.
     Ellipse {
         middle_m: (f64, f64),
@@ -27,13 +24,7 @@ impl Shape {
         match region {
             Region::Screen => Self::Everywhere,
             Region::Rectangle { x_m, y_m, width_m, height_m } => {
-                let (left_m, top_m) = (f64::from(x_m), f64::from(y_m));
-                Self::Rectangle {
-                    left_m,
-                    top_m,
-                    right_m: left_m + f64::from(width_m),
-                    bottom_m: top_m + f64::from(height_m),
-                }
+                Self::Rectangle(Cell::of_region(x_m, y_m, width_m, height_m))
             }
             Region::Ellipse { x_m, y_m, width_m, height_m } => {
                 let half_axes_m = (0.5 * f64::from(width_m), 0.5 * f64::from(height_m));
@@ -52,7 +43,7 @@ impl Shape {
     pub(crate) fn covers(&self, x_m: f64, y_m: f64) -> bool {
         match self {
             Self::Everywhere => true,
-            Self::Rectangle { left_m, top_m, right_m, bottom_m } => {
+            Self::Rectangle(Cell { left_m, top_m, right_m, bottom_m }) => {
                 x_m >= *left_m && x_m < *right_m && y_m >= *top_m && y_m < *bottom_m
             }
             Self::Ellipse { middle_m, half_axes_m } => {
@@ -74,16 +65,15 @@ impl Shape {
     pub(crate) fn bounds_m(&self) -> [f64; 4] {
         match self {
             Self::Everywhere => [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY],
-            Self::Rectangle { left_m, top_m, right_m, bottom_m } => [*left_m, *top_m, *right_m, *bottom_m],
+            Self::Rectangle(Cell { left_m, top_m, right_m, bottom_m }) => [*left_m, *top_m, *right_m, *bottom_m],
             Self::Ellipse { middle_m: (x_m, y_m), half_axes_m: (a_m, b_m) } => {
                 [x_m - a_m, y_m - b_m, x_m + a_m, y_m + b_m]
             }
-            Self::Polygon(vertices) => vertices.iter().fold(
-                [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY],
-                |[left_m, top_m, right_m, bottom_m], (x_m, y_m)| {
-                    [left_m.min(*x_m), top_m.min(*y_m), right_m.max(*x_m), bottom_m.max(*y_m)]
-                },
-            ),
+            Self::Polygon(vertices) => {
+                let x_m = Interval::of(vertices.iter().map(|(x_m, _)| *x_m));
+                let y_m = Interval::of(vertices.iter().map(|(_, y_m)| *y_m));
+                [x_m.low, y_m.low, x_m.high, y_m.high]
+            }
         }
     }
 }

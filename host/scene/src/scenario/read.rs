@@ -51,7 +51,7 @@ pub(super) fn scenario(mut fields: Fields, name: &str, log: &mut Log) -> Option<
     let faults = fields.tables(log, &file::FAULT).unwrap_or_default();
     let mut names = Names { given: Vec::new(), known: HashSet::new(), are_known: log.mistakes() == before };
     let expectations = fields.tables(log, &file::EXPECT).unwrap_or_default();
-    let place = fields.table_place();
+    let place = fields.places().table();
     fields.close(log);
     let entries = commands.len() + faults.len() + expectations.len();
     if entries > ENTRIES_MAX {
@@ -142,7 +142,7 @@ impl Names {
 }
 
 fn line_of(fields: &Fields, log: &Log) -> usize {
-    log.source().line_and_column(fields.table_place()).0
+    log.source().line_and_column(fields.places().table()).0
 }
 
 /// Start time of a command or a fault, checked against the scenario's duration.
@@ -157,28 +157,30 @@ fn at_ms(fields: &mut Fields, seconds: Option<f64>, log: &mut Log) -> Option<f64
     at_ms
 }
 
-/// Action of a command, before its fields are read.
-#[derive(Clone, Copy)]
-pub(super) enum CommandWord {
-    Plain(fn() -> Action),
-    Replace,
-    Trigger,
-    SetLayer,
-    Hang,
-}
+/// Reads the fields of an action.
+type ReadAction = fn(&mut Fields, &mut Log) -> Option<Action>;
 
-pub(super) const COMMAND_WORDS: [(&str, CommandWord); 11] = [
-    ("connect", CommandWord::Plain(|| Action::Connect)),
-    ("play", CommandWord::Plain(|| Action::Play)),
-    ("upload", CommandWord::Plain(|| Action::Upload)),
-    ("stop", CommandWord::Plain(|| Action::Stop)),
-    ("clear-fault", CommandWord::Plain(|| Action::ClearFault)),
-    ("replace", CommandWord::Replace),
-    ("trigger", CommandWord::Trigger),
-    ("layer", CommandWord::SetLayer),
-    ("hang", CommandWord::Hang),
-    ("die", CommandWord::Plain(|| Action::Die)),
-    ("other-client", CommandWord::Plain(|| Action::OtherClient)),
+pub(super) const ACTIONS: [(&str, ReadAction); 11] = [
+    ("connect", |_, _| Some(Action::Connect)),
+    ("play", |_, _| Some(Action::Play)),
+    ("upload", |_, _| Some(Action::Upload)),
+    ("stop", |_, _| Some(Action::Stop)),
+    ("clear-fault", |_, _| Some(Action::ClearFault)),
+    ("replace", |fields, log| Some(Action::Replace { scene: fields.text(log, &command::SCENE)? })),
+    ("trigger", |fields, log| {
+        let duration_s = fields.number(log, &when::FOR_MS).map(|ms| 1e-3 * ms);
+        Some(Action::Trigger { layer: fields.text(log, &command::LAYER)?, duration_s })
+    }),
+    ("layer", |fields, log| {
+        let gain = fields.number(log, &command::GAIN);
+        Some(Action::SetLayer { layer: fields.text(log, &command::LAYER)?, gain })
+    }),
+    ("hang", |fields, log| {
+        fields.require(&when::FOR_MS);
+        Some(Action::Hang { ms: fields.number(log, &when::FOR_MS)? })
+    }),
+    ("die", |_, _| Some(Action::Die)),
+    ("other-client", |_, _| Some(Action::OtherClient)),
 ];
 
 fn scenario_command(
@@ -190,113 +192,83 @@ fn scenario_command(
     let line = line_of(&fields, log);
     let at_ms = at_ms(&mut fields, seconds, log);
     let name = names.read(&mut fields, log);
-    let action = match fields.choice_or_nearest(log, &command::DO, &COMMAND_WORDS) {
-        Some(CommandWord::Plain(action)) => Some(action()),
-        Some(CommandWord::Replace) => fields.text(log, &command::SCENE).map(|scene| Action::Replace { scene }),
-        Some(CommandWord::Trigger) => {
-            let duration_s = fields.number(log, &when::FOR_MS).map(|ms| 1e-3 * ms);
-            fields.text(log, &command::LAYER).map(|layer| Action::Trigger { layer, duration_s })
-        }
-        Some(CommandWord::SetLayer) => {
-            let gain = fields.number(log, &command::GAIN);
-            fields.text(log, &command::LAYER).map(|layer| Action::SetLayer { layer, gain })
-        }
-        Some(CommandWord::Hang) => {
-            fields.require(&when::FOR_MS);
-            fields.number(log, &when::FOR_MS).map(|ms| Action::Hang { ms })
-        }
-        None => {
-            fields.give_up_without(log, command::DO.name);
-            return None;
-        }
+    let Some(read) = fields.choice_or_nearest(log, &command::DO, &ACTIONS) else {
+        fields.give_up_without(log, command::DO.name);
+        return None;
     };
+    let action = read(&mut fields, log);
     fields.close(log);
     Some(ScenarioCommand { at_ms: at_ms?, name, line, action: action? })
 }
 
-/// Cause of a fault, before its fields are read.
-#[derive(Clone, Copy)]
-pub(super) enum Kind {
-    Cut,
-    Noise(fn(f64) -> NoiseConfig),
-    Late,
-    World(WorldFault),
-    Gain(fn(f64) -> WorldFault),
-    SlowOff,
-    DacStuck,
-    TouchJumps,
-    Rig(RigFault),
-    TickCountWraps,
+/// Reads the fields of a cause.
+type ReadCause = fn(&mut Fields, &mut Log) -> Option<Cause>;
+
+pub(super) const CAUSES: [(&str, ReadCause); 21] = [
+    ("cable-cut", |fields, log| on_line(fields, log, Some(LineDamage::Cut))),
+    ("bytes-lost", |fields, log| noise(fields, log, |share| NoiseConfig { lost_share: share, ..NO_NOISE })),
+    ("bytes-doubled", |fields, log| noise(fields, log, |share| NoiseConfig { doubled_share: share, ..NO_NOISE })),
+    ("bits-flipped", |fields, log| noise(fields, log, |share| NoiseConfig { bit_error_rate: share, ..NO_NOISE })),
+    ("bytes-late", |fields, log| {
+        let damage = fields.number(log, &fault::BY_MS).map(|ms| LineDamage::Late { ms });
+        on_line(fields, log, damage)
+    }),
+    ("touch-silent", |_, _| Some(world(WorldFault::TouchSilent))),
+    ("touch-stuck", |_, _| Some(world(WorldFault::TouchStuck))),
+    ("touch-jumps", |fields, log| {
+        Some(world(WorldFault::TouchJumps { by_m: 1e-3 * fields.number(log, &fault::BY_MM)? }))
+    }),
+    ("finger-lifted", |_, _| Some(world(WorldFault::FingerLifted))),
+    ("dac-stuck", |fields, log| Some(Cause::DacStuck { fraction: fields.number(log, &fault::FRACTION)? })),
+    ("amplifier-not-ready", |_, _| Some(world(WorldFault::AmplifierNotReady))),
+    ("amplifier-stuck-on", |_, _| Some(world(WorldFault::AmplifierStuckOn))),
+    ("amplifier-sags", |fields, log| Some(world(WorldFault::AmplifierGain(fields.number(log, &fault::GAIN)?)))),
+    ("amplifier-slow-off", |fields, log| {
+        Some(world(WorldFault::AmplifierSlowOff { delay_s: 1e-3 * fields.number(log, &fault::BY_MS)? }))
+    }),
+    ("monitor-wrong", |fields, log| Some(world(WorldFault::MonitorGain(fields.number(log, &fault::GAIN)?)))),
+    ("switch-open", |_, _| Some(world(WorldFault::SwitchOpen))),
+    ("switch-welded", |_, _| Some(world(WorldFault::SwitchWelded))),
+    ("reset", |_, _| Some(Cause::Rig(RigFault::Reset))),
+    ("option-bytes", |_, _| Some(Cause::Rig(RigFault::OptionBytes))),
+    ("late-tick", |_, _| Some(Cause::Rig(RigFault::LateTick))),
+    ("tick-count-wraps", |fields, log| Some(Cause::TickCountWraps { in_ms: fields.number(log, &fault::IN_MS)? })),
+];
+
+fn world(fault: WorldFault) -> Cause {
+    Cause::Rig(RigFault::World(fault))
 }
 
-pub(super) const KINDS: [(&str, Kind); 21] = [
-    ("cable-cut", Kind::Cut),
-    ("bytes-lost", Kind::Noise(|share| NoiseConfig { lost_share: share, ..NO_NOISE })),
-    ("bytes-doubled", Kind::Noise(|share| NoiseConfig { doubled_share: share, ..NO_NOISE })),
-    ("bits-flipped", Kind::Noise(|share| NoiseConfig { bit_error_rate: share, ..NO_NOISE })),
-    ("bytes-late", Kind::Late),
-    ("touch-silent", Kind::World(WorldFault::TouchSilent)),
-    ("touch-stuck", Kind::World(WorldFault::TouchStuck)),
-    ("touch-jumps", Kind::TouchJumps),
-    ("finger-lifted", Kind::World(WorldFault::FingerLifted)),
-    ("dac-stuck", Kind::DacStuck),
-    ("amplifier-not-ready", Kind::World(WorldFault::AmplifierNotReady)),
-    ("amplifier-stuck-on", Kind::World(WorldFault::AmplifierStuckOn)),
-    ("amplifier-sags", Kind::Gain(WorldFault::AmplifierGain)),
-    ("amplifier-slow-off", Kind::SlowOff),
-    ("monitor-wrong", Kind::Gain(WorldFault::MonitorGain)),
-    ("switch-open", Kind::World(WorldFault::SwitchOpen)),
-    ("switch-welded", Kind::World(WorldFault::SwitchWelded)),
-    ("reset", Kind::Rig(RigFault::Reset)),
-    ("option-bytes", Kind::Rig(RigFault::OptionBytes)),
-    ("late-tick", Kind::Rig(RigFault::LateTick)),
-    ("tick-count-wraps", Kind::TickCountWraps),
-];
+fn noise(fields: &mut Fields, log: &mut Log, of_share: fn(f64) -> NoiseConfig) -> Option<Cause> {
+    let damage = fields.number(log, &fault::SHARE_OF).map(|share| LineDamage::Noise(of_share(share)));
+    on_line(fields, log, damage)
+}
+
+/// Damage to a line, in the directions that the file names.
+fn on_line(fields: &mut Fields, log: &mut Log, damage: Option<LineDamage>) -> Option<Cause> {
+    let lines = [("both", [true, true]), ("to-board", [true, false]), ("to-host", [false, true])];
+    let directions = fields.choice(log, &fault::LINE, &lines).unwrap_or([true, true]);
+    Some(Cause::Line { directions, damage: damage? })
+}
+
 const NO_NOISE: NoiseConfig = NoiseConfig { bit_error_rate: 0.0, lost_share: 0.0, doubled_share: 0.0 };
 
 fn scenario_fault(mut fields: Fields, seconds: Option<f64>, names: &mut Names, log: &mut Log) -> Option<ScenarioFault> {
     let line = line_of(&fields, log);
     let at_ms = at_ms(&mut fields, seconds, log);
     let name = names.read(&mut fields, log);
-    let Some(kind) = fields.choice_or_nearest(log, &fault::CAUSE, &KINDS) else {
+    let Some(read) = fields.choice_or_nearest(log, &fault::CAUSE, &CAUSES) else {
         fields.give_up_without(log, fault::CAUSE.name);
         return None;
     };
-    let cause = cause(kind, &mut fields, log);
-    let happens_once = matches!(kind, Kind::Rig(_) | Kind::TickCountWraps);
+    let cause = read(&mut fields, log);
+    let happens_once = matches!(
+        cause,
+        Some(Cause::Rig(RigFault::Reset | RigFault::OptionBytes | RigFault::LateTick) | Cause::TickCountWraps { .. })
+    );
     let for_ms = if happens_once { None } else { fields.number(log, &when::FOR_MS) };
     fields.close(log);
     Some(ScenarioFault { at_ms: at_ms?, for_ms, name, line, cause: cause? })
-}
-
-fn cause(kind: Kind, fields: &mut Fields, log: &mut Log) -> Option<Cause> {
-    let world = |fault| Cause::Rig(RigFault::World(fault));
-    let mut number = |field: &FieldSpec| fields.number(log, field);
-    let damage = match kind {
-        Kind::World(fault) => return Some(world(fault)),
-        Kind::Gain(fault) => return number(&fault::GAIN).map(|gain| world(fault(gain))),
-        Kind::SlowOff => {
-            return number(&fault::BY_MS).map(|ms| world(WorldFault::AmplifierSlowOff { delay_s: 1e-3 * ms }));
-        }
-        Kind::DacStuck => return number(&fault::FRACTION).map(|fraction| Cause::DacStuck { fraction }),
-        Kind::TouchJumps => return number(&fault::BY_MM).map(|mm| world(WorldFault::TouchJumps { by_m: 1e-3 * mm })),
-        Kind::Rig(fault) => return Some(Cause::Rig(fault)),
-        Kind::TickCountWraps => return number(&fault::IN_MS).map(|in_ms| Cause::TickCountWraps { in_ms }),
-        Kind::Cut => Some(LineDamage::Cut),
-        Kind::Noise(noise) => number(&fault::SHARE_OF).map(|share| LineDamage::Noise(noise(share))),
-        Kind::Late => number(&fault::BY_MS).map(|ms| LineDamage::Late { ms }),
-    };
-    let lines = [("both", [true, true]), ("to-board", [true, false]), ("to-host", [false, true])];
-    let directions = fields.choice(log, &fault::LINE, &lines).unwrap_or([true, true]);
-    Some(Cause::Line { directions, damage: damage? })
-}
-
-/// Expected output.
-#[derive(Clone, Copy)]
-enum Output {
-    Zero,
-    Off,
-    Driven,
 }
 
 /// The expectations of one table, which share an interval of time.
@@ -313,21 +285,16 @@ fn expected(mut fields: Fields, names: &Names, log: &mut Log) -> Vec<Expectation
     if let Some(to_ms) = to_ms.filter(|to_ms| *to_ms < from_ms) {
         log.add(to_place, Mistake::EndsBeforeStart { from_ms, to_ms });
     }
-    let outputs = [("zero", Output::Zero), ("off", Output::Off), ("driven", Output::Driven)];
-    let output = fields.choice(log, &expect::OUTPUT, &outputs);
+    let outputs = [("zero", Condition::OutputZero), ("off", Condition::OutputOff), ("driven", Condition::OutputDriven)];
     let conditions = [
-        output.map(|output| match output {
-            Output::Zero => Condition::OutputZero,
-            Output::Off => Condition::OutputOff,
-            Output::Driven => Condition::OutputDriven,
-        }),
+        fields.choice(log, &expect::OUTPUT, &outputs),
         fields.number(log, &expect::ELECTRODE_BELOW_FRACTION).map(Condition::ElectrodeBelow),
         fields.interval(log, &expect::FRICTION_FRACTION).map(Condition::Friction),
         fields.choice(log, &expect::STATE, &STATES).map(Condition::State),
         fields.choice(log, &expect::FAULT, &FAULTS).map(Condition::Fault),
         fields.text(log, &expect::ERROR).map(Condition::Error),
     ];
-    let place = fields.table_place();
+    let place = fields.places().table();
     fields.close(log);
     let conditions: Vec<Condition> = conditions.into_iter().flatten().collect();
     if conditions.is_empty() && log.mistakes() == before {

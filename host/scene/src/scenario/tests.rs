@@ -85,7 +85,7 @@ fn the_documentation_has_every_word() {
     let docs = std::fs::read_to_string(file).unwrap();
     let fields = [tables::file::ALL, tables::stroke::ALL, tables::when::ALL, tables::command::ALL, tables::fault::ALL];
     let fields = fields.concat().into_iter().chain(tables::expect::ALL.iter().copied()).map(|field| field.name);
-    for word in fields.chain(read::COMMAND_WORDS.map(|(word, _)| word)).chain(read::KINDS.map(|(word, _)| word)) {
+    for word in fields.chain(read::ACTIONS.map(|(word, _)| word)).chain(read::CAUSES.map(|(word, _)| word)) {
         assert!(docs.contains(&format!("`{word}`")) || docs.contains(&format!("`[[{word}]]`")), "{word}");
     }
     for word in read::STATES.map(|(word, _)| word).into_iter().chain(read::FAULTS.map(|(word, _)| word)) {

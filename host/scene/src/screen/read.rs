@@ -1,7 +1,7 @@
 //! Reads the fields of a screen.
 
 use super::{Screen, Slab};
-use crate::fields::Fields;
+use crate::fields::{Fields, all};
 use crate::log::Log;
 use crate::mistake::FieldMistake;
 use crate::tables::{coating, screen};
@@ -36,7 +36,7 @@ pub(in super::super) fn read(mut fields: Fields, log: &mut Log) -> Option<Screen
 fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<Vec<Slab>> {
     if slabs.is_empty() {
         log.add(
-            around.table_place(),
+            around.places().table(),
             FieldMistake::MissingField { field: "coating", other: None, table: around.table_name().to_owned() },
         );
     }
@@ -47,8 +47,7 @@ fn coating_of(slabs: Vec<Fields>, around: &Fields, log: &mut Log) -> Option<Vec<
         places.push(fields.close(log).table());
         Some(Slab { thickness_um: thickness_um?, permittivity: permittivity? })
     };
-    let slabs: Vec<Option<Slab>> = slabs.into_iter().map(read).collect();
-    let slabs: Vec<Slab> = slabs.into_iter().collect::<Option<_>>()?;
+    let slabs = all(slabs.into_iter().map(read))?;
     let place = *places.first()?;
     let found = slabs.iter().fold(0.0, |sum, slab| sum + slab.thickness_um / slab.permittivity);
     if found > EFFECTIVE_GAP_MAX_UM {

@@ -5,9 +5,11 @@ use std::collections::BTreeSet;
 use frixel_testkit::corpus::{self, Case};
 
 use super::*;
-use crate::{
-    FieldMistake, FileMistake, FingerProfile, FitMistake, Message, Mistake, Optimisation, Profile, Screen, Warning,
-};
+use crate::diagnostic::Message;
+use crate::mistake::{FieldMistake, FileMistake, FitMistake, Mistake};
+use crate::optimisation::Optimisation;
+use crate::warning::Warning;
+use crate::{FingerProfile, Profile, Screen};
 
 /// The files of a case, the files shared by all cases, and the scene among them.
 struct Inputs {

@@ -6,7 +6,7 @@ fn refusal(draft: &Program) -> String {
     draft.refusals().next().expect("a refusal").to_string()
 }
 
-/// Scenes that a board refuses play as drafts, clamped to what can be reached, with the board's sentences.
+/// Scenes that a board refuses play as drafts, clamped to what can be reached. The corpus has the board's sentences.
 #[test]
 fn drafts() {
     let draft = |layers: &str| {
@@ -17,25 +17,18 @@ fn drafts() {
         program
     };
     let reach = draft("[[layer]]\nkind = \"constant\"\nfriction_n = 0.9\n");
-    assert!(
-        refusal(&reach).starts_with("test.toml:21:14: layer 1 (constant) asks for up to 0.9 N"),
-        "{}",
-        refusal(&reach)
-    );
     assert_eq!(reach.records.len(), 1);
 
     let bytes = draft(
         "[[layer]]\nkind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 100\n\
          pitch_mm = 0.1\nwhite_n = 0.01\n",
     );
-    assert!(refusal(&bytes).contains("and the board has 65536"), "{}", refusal(&bytes));
     let samples: usize = bytes.bitmaps.iter().map(|bitmap| bitmap.samples.len()).sum();
     assert!((30_000..=65_536).contains(&samples), "{samples} bytes");
 
     let noise = "[[layer]]\nkind = \"noise\"\nblend = \"add\"\nwavelength_min_mm = 1\nwavelength_max_mm = 4\nlow_n = 0\n\
                  high_n = 0.001\n";
     let time = draft(&noise.repeat(5));
-    assert!(refusal(&time).contains("and the board has time for 2550"), "{}", refusal(&time));
     assert_eq!((time.records.len(), time.notes().count()), (5, 0));
 
     let absent = draft(
@@ -74,13 +67,4 @@ fn drafts_keep_to_the_limits_of_the_drive() {
     );
     assert!(refusal(&wide).contains("a skin gap is missing"), "{}", refusal(&wide));
     assert!(wide.reach.voltage_max_v_rms < 100.0, "{:?}", wide.reach);
-}
-
-/// A scene that cannot be read is no draft.
-#[test]
-fn what_cannot_be_read_is_no_draft() {
-    let text = format!("{HEAD}[[layer]]\nkind = \"constant\"\nfrction_n = 0.26\n");
-    let scene = Scene::parse(&text, "test.toml", &*PICTURES).expect("its head reads");
-    let refused = compile_draft(&scene, &LIMITS, TICK_HZ).expect_err("a layer has a misspelt field");
-    assert_eq!(refused, compile(&scene, &LIMITS, TICK_HZ).expect_err("a board refuses it, too"));
 }

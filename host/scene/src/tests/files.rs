@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::reference::Reference;
-use crate::{FileUnavailable, Files, FingerProfile, LayerTitle};
+use crate::{FileUnavailable, Files, LayerTitle};
 
 const BUTTONS: &str = "version = 1\n\n[defaults]\nrim_width_mm = 2\nrim_fraction = 0.8\nface_fraction = 0.4\n\n\
     [[layer]]\nname = \"back\"\nkind = \"button\"\nregion = { x_mm = 10, y_mm = 60, width_mm = 30, height_mm = 12 }\n";
@@ -75,14 +75,6 @@ fn names_of_100_000_characters_are_not_echoed_whole() {
 }
 
 #[test]
-fn tables_come_from_any_one_of_the_files() {
-    let common = "version = 1\nfinger = \"moist\"\n[drive]\nvoltage_max_v_rms = 100\n";
-    let apart = program(&format!("{SHORT}{FLAT}"), &[("common.toml", common)]);
-    assert!((apart.reach.natural_friction_n - 0.4).abs() < 1e-6, "{:?}", apart.reach);
-    assert_eq!(apart.header.voltage_max_v_rms.to_bits(), 100.0_f32.to_bits());
-}
-
-#[test]
 fn a_layers_own_field_counts_before_the_default_in_any_unit() {
     let defaults = "version = 1\n[defaults]\nfriction_n = 0.26\nregion = { x_mm = 0, y_mm = 0, width_mm = 9, height_mm = 9 }\n\
         low_n = 0.0\nwave = \"square\"\n";
@@ -108,19 +100,6 @@ fn the_nearest_default_counts_and_of_several_files_the_last_one() {
     close(value("version = 1\ninclude = [\"b.toml\", \"a.toml\"]\n", &files), 0.01);
     let own = "version = 1\ninclude = [\"a.toml\", \"b.toml\"]\n[defaults]\nfriction_n = 0.28\n";
     close(value(own, &files), 0.03);
-}
-
-#[test]
-fn names_of_files_start_from_the_folder_of_the_file_they_stand_in() {
-    let picture = "version = 1\n[[layer]]\nkind = \"bitmap\"\npicture = \"../textures/brick.png\"\nx_mm = 0\ny_mm = 0\n\
-        width_mm = 20\n";
-    let found = program("version = 1\ninclude = [\"parts/wall.toml\"]\n", &[("parts/wall.toml", picture)]);
-    assert_eq!(found.bitmaps.len(), 1);
-    let finger = format!("version = 1\nfinger = \"anna.toml\"\n{FLAT}");
-    let anna = FingerProfile { friction_coefficient: 0.45, ..FingerProfile::example() }.to_toml();
-    let files = [("parts/anna.toml", anna.as_str()), ("parts/all.toml", &finger)];
-    let named = program("version = 1\ninclude = [\"./parts/all.toml\"]\n", &files);
-    assert!((named.reach.natural_friction_n - 0.225).abs() < 1e-6, "{:?}", named.reach);
 }
 
 /// A file that cannot be read.

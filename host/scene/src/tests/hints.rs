@@ -1,32 +1,12 @@
 //! Names and numbers of layers, shared mistakes of layers, and limits of drafts and gains.
 
 use super::*;
-use crate::{DiagnosticKind, LayerTitle, Warning};
+use crate::{DiagnosticKind, LayerTitle};
 
 const TRACK: &str = "[[layer]]\nname = \"track\"\nkind = \"constant\"\nfriction_fraction = 0.2\n\
     region = { x_mm = 10, y_mm = 10, width_mm = 100, height_mm = 10 }\n";
 const EDGE: &str =
     "[[layer]]\nname = \"detent\"\nkind = \"edge\"\nx_mm = 20\ny_mm = 10\nwidth_mm = 2\nridge_fraction = 0.3\n";
-
-#[test]
-fn two_layers_of_one_name_are_pointed_out_with_the_one_that_counts() {
-    let at = |x_mm: u32, name: &str| {
-        format!(
-            "[[layer]]\nname = \"{name}\"\nkind = \"constant\"\nfriction_fraction = 0.2\nlive = true\n\
-             region = {{ x_mm = {x_mm}, y_mm = 0, width_mm = 9, height_mm = 9 }}\n"
-        )
-    };
-    let twice = format!("{}{}{}", at(0, "a"), at(10, "b"), at(20, "a"));
-    let program = compile_text(&format!("version = 1\n{twice}")).expect("it compiles");
-    assert_eq!((program.layers.records("a"), program.layers.records("3")), (Ok(vec![0]), Ok(vec![2])));
-    let keys = |y_mm: u32| {
-        at(0, "key").replace("y_mm = 0", &format!("y_mm = {y_mm}")) + "repeat = { columns = 3, dx_mm = 10 }\n"
-    };
-    let copies = compile_text(&format!("version = 1\n{}{}", keys(0), keys(20))).expect("it compiles");
-    let copies: Vec<&Warning> = copies.warnings().collect();
-    let [Warning::NameTwice { number, lower, .. }] = copies[..] else { panic!("{copies:?}") };
-    assert_eq!((number.as_str(), lower.as_str()), ("2.1", "1.1"));
-}
 
 /// The number of a layer in messages is the one that `--control` takes.
 #[test]
@@ -41,6 +21,10 @@ fn a_layer_has_one_number() {
     for (record, title) in (0..).zip(&program.titles) {
         assert_eq!(program.layers.records(&title.number().to_string()), Ok(vec![record]), "{title}");
     }
+    assert_eq!((program.layers.records("key"), program.layers.records("2")), (Ok(vec![1, 2, 3]), Ok(vec![1, 2, 3])));
+    // A name counts before a number.
+    let named = compile_text(&format!("version = 1\n{}{TRACK}live = true\n", layer("name = \"2\"\n", ""))).unwrap();
+    assert_eq!((named.layers.records("2"), named.layers.records("1")), (Ok(vec![0]), Ok(vec![0])));
     let titles: Vec<&str> = program.titles.iter().map(LayerTitle::as_str).collect();
     assert_eq!(
         titles[4..],

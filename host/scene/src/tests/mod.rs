@@ -92,12 +92,6 @@ fn mistakes(scene: &Result<Scene, CompileError>) -> &[Diagnostic] {
     scene.as_ref().map_or_else(|error| error.diagnostics.as_slice(), Scene::mistakes)
 }
 
-/// A scene of the repository.
-fn bundled(name: &str) -> Scene {
-    let text = fs::read_to_string(scenes().join(name)).expect(name);
-    Scene::parse(&text, name, &*PICTURES).expect(name)
-}
-
 fn compile_layers(layers: &str) -> Program {
     compile_text(&format!("{HEAD}{layers}")).expect("it compiles")
 }

@@ -12,7 +12,7 @@ fn small_and_whole(layers: &str) -> (Program, Program) {
 #[track_caller]
 fn check(layers: &str, expected: &[&str], records: usize) {
     let (small, whole) = small_and_whole(layers);
-    let found: Vec<String> = small.optimisations().map(ToString::to_string).collect();
+    let found: Vec<String> = small.optimisations().collect();
     assert_eq!(found, expected);
     assert_eq!((small.records.len(), small.titles.len()), (records, records));
     assert_eq!(whole.records.len(), layers.matches("[[layer]]").count());

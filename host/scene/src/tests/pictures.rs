@@ -16,11 +16,6 @@ fn program(layers: &str) -> Program {
     compile_text(&format!("{SHORT}{layers}")).expect("it compiles")
 }
 
-/// Width and height in samples.
-fn sizes(program: &Program) -> Vec<(u16, u16)> {
-    program.bitmaps.iter().map(|bitmap| (bitmap.width, bitmap.height)).collect()
-}
-
 /// Names of one picture count once, and of two pictures the first is read.
 #[test]
 fn the_pictures_of_a_scene_have_so_many_pixels_together() {
@@ -33,15 +28,6 @@ fn the_pictures_of_a_scene_have_so_many_pixels_together() {
     let error = decoded["textures/leather.png"].as_ref().expect_err("it is refused").to_string();
     let says = "it has 200 x 200 pixels, and the pictures of a scene have at most 67108864 together: make them smaller";
     assert!(error.ends_with(says), "{error}");
-}
-
-#[test]
-fn a_small_picture_has_a_sample_for_each_pixel() {
-    let found = program(&layer("leather.png", 0, 50, ""));
-    assert_eq!(sizes(&found), [(200, 200)]);
-    assert_eq!(found.scene_bytes(), program(&layer("leather.png", 0, 50, "pitch_mm = \"auto\"")).scene_bytes());
-    // At the pitch of its pixels, the samples are the pixels.
-    assert!(found.bitmaps == program(&layer("leather.png", 0, 50, "pitch_mm = 0.25")).bitmaps);
 }
 
 #[test]
@@ -82,7 +68,7 @@ fn a_black_icon_on_a_transparent_ground_is_felt_over_white() {
         let pictures = BTreeMap::from([("textures/icon.png".to_owned(), icon())]);
         let scene = Scene::parse(&text, "icon.toml", &pictures).expect("it is a scene");
         let program = compile(&scene, &LIMITS, TICK_HZ).expect("it compiles");
-        let is_hidden = program.warnings().any(|warning| warning.to_string().contains("its shape cannot be felt"));
+        let is_hidden = program.warnings().any(|warning| warning.contains("its shape cannot be felt"));
         let friction_n = crate::reference::Reference::new(&program).electric_friction_n(1e-3 * x_mm, 4.5e-3);
         ((10.0 * friction_n / program.reach.electric_friction_max_n).round() as i64, is_hidden)
     };

@@ -9,7 +9,9 @@ use serde_json::Value;
 
 use super::json_schema::is_valid;
 use super::*;
-use crate::{FieldMistake, FileMistake, Message, Mistake, json_schema};
+use crate::diagnostic::Message;
+use crate::json_schema;
+use crate::mistake::{FieldMistake, FileMistake, Mistake};
 
 static SCHEMA: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(&json_schema()).expect("it is JSON"));
 
@@ -105,37 +107,4 @@ fn every_field_has_a_meaning() {
         }
     }
     assert!(described > 150, "{described}");
-}
-
-#[test]
-fn the_schema_separates_allowed_from_forbidden_combinations() {
-    let layer = |rest: &str| format!("{HEAD}[[layer]]\n{rest}");
-    for (text, right) in [
-        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nwave = \"square\"\nduty = 0.3", true),
-        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nduty = 0.3", false),
-        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_fraction = 0.3", true),
-        ("kind = \"grating\"\nwavelength_mm = 2\nlow_n = 0\nhigh_n = 0.01\nhigh_fraction = 0.3", false),
-        ("kind = \"grating\"\nwavelength_mm = 2\nblend = \"multiply\"\nlow_factor = 0\nhigh_factor = 1", true),
-        ("kind = \"grating\"\nwavelength_mm = 2\nlow_factor = 0\nhigh_factor = 1", false),
-        (
-            "kind = \"constant\"\nfriction_n = 0.26\nregion = { shape = \"polygon\", points_mm = [[0, 0], [9, 0], [0, 9]] }",
-            true,
-        ),
-        (
-            "kind = \"constant\"\nfriction_n = 0.26\nregion = { shape = \"ellipse\", points_mm = [[0, 0], [9, 0], [0, 9]] }",
-            false,
-        ),
-        ("kind = \"bitmap\"\npicture = \"textures/brick.png\"\nx_mm = 0\ny_mm = 0\nwidth_mm = 20", true),
-        ("kind = \"bitmap\"\npicture = \"textures/brick.png\"\ny_mm = 0\nwidth_mm = 20", false),
-        (
-            "kind = \"bitmap\"\npicture = \"textures/brick.png\"\nregion = { x_mm = 0, y_mm = 0, width_mm = 20, height_mm = 20 }",
-            true,
-        ),
-        ("kind = \"speed\"\nspeeds_mm_per_s = [10, 20]\nfactors = [0, 1]\nblend = \"add\"", false),
-    ] {
-        let text = layer(text);
-        let scene = json(&text).expect("it is TOML");
-        assert_eq!(schema_takes(&scene), right, "{text}");
-        assert_eq!(compile_text(&text).is_ok(), right, "{text}");
-    }
 }
