@@ -4,7 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::style::{LABEL, Scale, text_width};
-use super::{Area, DrawError, Drawn, Line, Look, Mark, Panel, Series};
+use super::{Area, DrawError, Drawn, Line, Look, Mark, Series};
 
 /// Height of a line, in pixels.
 const LINE_HEIGHT: u32 = 20;
@@ -16,7 +16,7 @@ const COLUMN_GAP: u32 = 24;
 const LEFT: u32 = 30;
 
 /// Names and styles, in order.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Legend(Vec<(String, Look)>);
 
 impl Legend {
@@ -24,17 +24,6 @@ impl Legend {
     pub(super) fn of(series: &[Series]) -> Self {
         let named = series.iter().filter(|series| !series.name.is_empty());
         Self(named.map(|series| (series.name.clone(), series.look)).collect())
-    }
-
-    /// The legend of the series of all panels, without duplicate names.
-    pub(super) fn of_all(panels: &[Panel]) -> Self {
-        let mut all = Self::default();
-        for (name, look) in panels.iter().flat_map(|panel| Self::of(&panel.series).0) {
-            if !all.0.iter().any(|(known, _)| *known == name) {
-                all.0.push((name, look));
-            }
-        }
-        all
     }
 
     /// Height of the legend for a given width, both in pixels.
@@ -55,20 +44,14 @@ impl Legend {
         Ok(self.0.len().div_ceil(self.columns(width)?))
     }
 
-    /// Draws the legend from a corner in pixels, column by column.
-    pub(super) fn draw<DB: DrawingBackend>(
-        &self,
-        area: &Area<DB>,
-        (x, y): (u32, u32),
-        width: u32,
-        scale: Scale,
-    ) -> Drawn {
+    /// Draws the legend below `top`, in pixels, column by column.
+    pub(super) fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, top: u32, width: u32, scale: Scale) -> Drawn {
         let (columns, lines) = (self.columns(width)?, self.lines(width)?);
         let column_width = (width - LEFT) / columns as u32;
         for (index, (name, look)) in self.0.iter().enumerate() {
             let (column, line) = ((index / lines) as u32, (index % lines) as u32);
-            let left = x + LEFT + column * column_width;
-            let middle = scale.px(y + line * LINE_HEIGHT + LINE_HEIGHT / 2) as i32;
+            let left = LEFT + column * column_width;
+            let middle = scale.px(top + line * LINE_HEIGHT + LINE_HEIGHT / 2) as i32;
             draw_sample(area, (scale.px(left) as i32, middle), look, scale)?;
             let place = (scale.px(left + SAMPLE + GAP) as i32, middle);
             area.draw(&Text::new(name.as_str(), place, scale.letters_at(LABEL, HPos::Left)))?;

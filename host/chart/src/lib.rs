@@ -67,8 +67,6 @@ pub struct Chart {
     pub panels: Vec<Panel>,
     /// Number of panels in a row.
     pub columns: u32,
-    /// Whether one legend below all panels replaces the legend of each panel.
-    pub shared_legend: bool,
     /// Sentences below the panels.
     pub caption: Vec<String>,
     /// Width of the picture, in pixels.
@@ -151,15 +149,9 @@ impl Panel {
 }
 
 impl Chart {
-    /// Creates a chart without a title, with `columns` panels in a row, each with its own legend.
+    /// Creates a chart without a title, with `columns` panels in a row.
     pub fn new(panels: Vec<Panel>, columns: u32) -> Self {
-        Self { title: String::new(), panels, columns, shared_legend: false, caption: Vec::new(), width: WIDTH }
-    }
-
-    /// Uses one legend for all panels.
-    #[must_use]
-    pub fn with_shared_legend(self) -> Self {
-        Self { shared_legend: true, ..self }
+        Self { title: String::new(), panels, columns, caption: Vec::new(), width: WIDTH }
     }
 
     /// Draws the chart as an SVG document. Texts must not contain control characters, which XML cannot represent.
@@ -197,14 +189,9 @@ impl Chart {
                 let corner = (px(column * panel_width), px(top));
                 let place = area.clone().shrink(corner, (px(panel_width), px(row.height)));
                 plot::draw(&place, panel, scale)?;
-                if !self.shared_legend {
-                    Legend::of(&panel.series).draw(&place, (0, row.plot_height + SPACING / 2), panel_width, scale)?;
-                }
+                Legend::of(&panel.series).draw(&place, row.plot_height + SPACING / 2, panel_width, scale)?;
             }
             top += row.height;
-        }
-        if self.shared_legend {
-            Legend::of_all(&self.panels).draw(area, (0, top), self.width, scale)?;
         }
         top = layout.height - layout.caption.len() as u32 * CAPTION_LINE - SPACING;
         for line in &layout.caption {
@@ -242,12 +229,11 @@ impl<'c> Layout<'c> {
         for panels in chart.panels.chunks(columns as usize) {
             let plot_height = panels.iter().map(|panel| panel.height).max().unwrap_or_default();
             let mut legend_height = 0;
-            for panel in panels.iter().filter(|_| !chart.shared_legend) {
+            for panel in panels {
                 legend_height = legend_height.max(Legend::of(&panel.series).height(panel_width)?);
             }
             rows.push(Row { panels, plot_height, height: plot_height + legend_height + SPACING });
         }
-        let legend_height = if chart.shared_legend { Legend::of_all(&chart.panels).height(chart.width)? } else { 0 };
         let left = chart.panels.first().map_or(EDGE, |panel| panel.margins.left);
         let mut caption = Vec::new();
         for sentence in &chart.caption {
@@ -255,7 +241,7 @@ impl<'c> Layout<'c> {
         }
         let title_height = if chart.title.is_empty() { 0 } else { TITLE_HEIGHT };
         let caption_height = if caption.is_empty() { 0 } else { caption.len() as u32 * CAPTION_LINE + SPACING };
-        let height = title_height + rows.iter().map(|row| row.height).sum::<u32>() + legend_height + caption_height;
+        let height = title_height + rows.iter().map(|row| row.height).sum::<u32>() + caption_height;
         Ok(Self { title_height, panel_width, rows, caption, height })
     }
 }

@@ -92,9 +92,7 @@ pub enum Mark {
     Casing,
     Ring,
     Square,
-    Triangle,
     Diamond,
-    Cross,
 }
 
 impl Look {
@@ -112,9 +110,8 @@ impl Look {
     fn corners(self) -> Option<&'static [(f64, f64)]> {
         match self.mark {
             Mark::Square => Some(&[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)]),
-            Mark::Triangle => Some(&[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)]),
             Mark::Diamond => Some(&[(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)]),
-            Mark::None | Mark::Disc | Mark::Casing | Mark::Ring | Mark::Cross => None,
+            Mark::None | Mark::Disc | Mark::Casing | Mark::Ring => None,
         }
     }
 }
@@ -174,7 +171,6 @@ impl Scale {
             Mark::Disc => area.draw(&Circle::new((x, y), size as i32, look.colour.filled()))?,
             Mark::Casing => area.draw(&Circle::new((x, y), (1.5 * size) as i32, look.colour.filled()))?,
             Mark::Ring => area.draw(&Circle::new((x, y), size as i32, stroke))?,
-            Mark::Cross => area.draw(&Cross::new((x, y), size as i32, stroke))?,
             _ => {}
         }
         Ok(())
