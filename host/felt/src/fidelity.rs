@@ -30,9 +30,9 @@ pub use goal::{FidelityMean, Goal};
 /// Sampling rate, Hz.
 pub const SAMPLE_HZ: f64 = 4000.0;
 /// Border between perceived friction and perceived vibration, Hz.
-pub const BAND_BORDER_HZ: f64 = 40.0;
+const BAND_BORDER_HZ: f64 = 40.0;
 /// Upper end of the band of vibrations, Hz.
-pub const BAND_END_HZ: f64 = 400.0;
+const BAND_END_HZ: f64 = 400.0;
 /// Shortest scored touch, in samples.
 const STRETCH_MIN: usize = 1000;
 /// Delays that are tried, in samples: from 10 ms early to 100 ms late.
@@ -191,19 +191,8 @@ impl Fidelity {
     /// The score without ratios, for a reference that changes only with load and skin, and not with the scene.
     #[must_use]
     pub fn without_ratios(self) -> Self {
-        Self {
-            error: None,
-            correlation: None,
-            error_below_40_hz: None,
-            correlation_below_40_hz: None,
-            snr_below_40_hz_db: None,
-            snr_above_40_hz_db: None,
-            contrast_kept: None,
-            delay_ms: None,
-            delay_mm: None,
-            peak_rate_kept: None,
-            ..self
-        }
+        let Self { error_weber, contrast_weber_steps, spurious_40_to_400_hz_n, spurious_over_noise_db, .. } = self;
+        Self { error_weber, contrast_weber_steps, spurious_40_to_400_hz_n, spurious_over_noise_db, ..Self::default() }
     }
 }
 

@@ -25,5 +25,6 @@ mod spectrum;
 mod tests;
 
 pub use goes_on::{GoesOn, TO_THE_END, break_if};
+pub use percentile::percentiles;
 pub use preview::{FrictionMap, MapGrid, Preview, ReachSide};
 pub use spectrum::band_rms;

@@ -18,7 +18,7 @@
 
 /// The known values of one tick. Frictions are totals, in newtons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Whether the finger is on the screen.
     pub finger_down: bool,
     /// Whether the board has received a report of a finger; absent if the board did not report.
@@ -43,10 +43,12 @@ pub struct Sample {
 }
 
 /// Collects errors, sample by sample.
-#[derive(Clone, Debug)]
-pub struct Metrics {
-    error: PeriodMean,
-    felt: Centred,
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Metrics {
+    /// Errors of a carrier period.
+    error: Ring,
+    /// Felt friction of a carrier period and one sample more.
+    felt: Ring,
     finger_down_samples: u64,
     /// Whether the board has received a report of the finger since it came down.
     is_reported: bool,
@@ -99,33 +101,19 @@ pub struct ErrorSize {
 
 impl Metrics {
     /// Creates metrics without errors, for a carrier period of twice `half_period_ticks`.
-    pub fn new(half_period_ticks: u32) -> Self {
+    pub(crate) fn new(half_period_ticks: u32) -> Self {
         let half = half_period_ticks.max(1) as usize;
-        Self {
-            error: PeriodMean::new(2 * half),
-            felt: Centred::new(half),
-            finger_down_samples: 0,
-            is_reported: false,
-            unreported_samples: 0,
-            reports: 0,
-            saturated_samples: 0,
-            slewing_samples: 0,
-            friction_error: Spread::default(),
-            inversion_error: Spread::default(),
-            load_mismatch: Spread::default(),
-            carrier_ripple: Spread::default(),
-            reference_range_n: None,
-        }
+        Self { error: Ring::new(2 * half), felt: Ring::new(2 * half + 1), ..Self::default() }
     }
 
     /// Sets the carrier period to twice `half_period_ticks` from now on, and empties the windows.
-    pub fn set_half_period(&mut self, half_period_ticks: u32) {
+    pub(crate) fn set_half_period(&mut self, half_period_ticks: u32) {
         let Self { error, felt, .. } = Self::new(half_period_ticks);
         (self.error, self.felt) = (error, felt);
     }
 
     /// Adds the next sample.
-    pub fn add(&mut self, sample: &Sample) {
+    pub(crate) fn add(&mut self, sample: &Sample) {
         if let Some(saturated) = sample.saturated {
             self.reports += 1;
             self.saturated_samples += u64::from(saturated);
@@ -141,7 +129,7 @@ impl Metrics {
         self.unreported_samples += u64::from(!self.is_reported);
         let errors = sample.felt_n.zip(sample.reference_n).filter(|_| self.is_reported);
         if let Some((felt_n, reference_n)) = errors {
-            self.friction_error.add(self.error.push(felt_n - reference_n));
+            self.friction_error.add(self.error.mean_with(felt_n - reference_n));
         }
         self.slewing_samples += u64::from(sample.slewing);
         if let Some((inversion_n, commanded_n)) = sample.inversion_n.zip(sample.commanded_n).filter(|_| !sample.slewing)
@@ -151,7 +139,7 @@ impl Metrics {
         if let Some(load_mismatch_n) = sample.load_mismatch_n {
             self.load_mismatch.add(load_mismatch_n);
         }
-        if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.push(felt_n)) {
+        if let Some(ripple_n) = sample.felt_n.and_then(|felt_n| self.felt.ripple_with(felt_n)) {
             self.carrier_ripple.add(ripple_n);
         }
         if let Some(reference_n) = sample.reference_n.filter(|_| !sample.turning) {
@@ -161,7 +149,7 @@ impl Metrics {
     }
 
     /// The errors so far, of a play of `ticks` ticks.
-    pub fn summary(&self, ticks: u64) -> MetricsSummary {
+    pub(crate) fn summary(&self, ticks: u64) -> MetricsSummary {
         let every_tick_reported = self.reports == ticks;
         MetricsSummary {
             ticks,
@@ -206,7 +194,7 @@ impl Spread {
 
 /// The last values, up to a fixed number, and their sum. The sum is recomputed each time the ring wraps around, so that
 /// rounding errors do not accumulate.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Ring {
     values: Vec<f64>,
     next: usize,
@@ -235,59 +223,26 @@ impl Ring {
         }
     }
 
-    fn is_full(&self) -> bool {
-        self.filled == self.values.len()
-    }
-
     /// The value `ago` values before the last one.
     fn ago(&self, ago: usize) -> f64 {
         let length = self.values.len();
         self.values[(self.next + length - 1 - ago) % length]
     }
-}
 
-/// Mean over a period that ends at the last value, or over the values so far if they are fewer.
-#[derive(Clone, Debug)]
-struct PeriodMean(Ring);
-
-impl PeriodMean {
-    fn new(period: usize) -> Self {
-        Self(Ring::new(period))
+    /// Adds a value, and returns the mean of all values in the ring.
+    fn mean_with(&mut self, value: f64) -> f64 {
+        self.push(value);
+        self.sum / self.filled as f64
     }
 
-    fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    fn push(&mut self, value: f64) -> f64 {
-        self.0.push(value);
-        self.0.sum / self.0.filled as f64
-    }
-}
-
-/// Difference of a value and the mean over the period around it. The window has one value more than a period, and its
-/// two end values count half, so that it is centred.
-#[derive(Clone, Debug)]
-struct Centred {
-    ring: Ring,
-    half: usize,
-}
-
-impl Centred {
-    fn new(half: usize) -> Self {
-        Self { ring: Ring::new(2 * half + 1), half }
-    }
-
-    fn clear(&mut self) {
-        self.ring.clear();
-    }
-
-    /// Adds a value; returns the difference of the value half a period earlier, or `None` until the window is full.
-    fn push(&mut self, value: f64) -> Option<f64> {
-        self.ring.push(value);
-        let ends = 0.5 * (self.ring.ago(0) + self.ring.ago(2 * self.half));
-        let mean = (self.ring.sum - ends) / (2 * self.half) as f64;
-        self.ring.is_full().then(|| self.ring.ago(self.half) - mean)
+    /// Adds a value, and returns the difference of the middle value and the mean of the ring; `None` until the ring is
+    /// full. The ring has one value more than a period, and its two end values count half, so that the mean is centred.
+    fn ripple_with(&mut self, value: f64) -> Option<f64> {
+        self.push(value);
+        let period = self.values.len() - 1;
+        let ends = 0.5 * (self.ago(0) + self.ago(period));
+        let mean = (self.sum - ends) / period as f64;
+        (self.filled > period).then(|| self.ago(period / 2) - mean)
     }
 }
 

@@ -73,9 +73,7 @@ struct PerceivedTexture {
 
 impl Perceived {
     fn of(layer: &LayerVerdict) -> Self {
-        let steps = layer.border.iter().map(|border| border.step).chain([layer.contrast]);
-        let largest = steps.max_by(|one, other| one.weber_steps.abs().total_cmp(&other.weber_steps.abs()));
-        let step = largest.unwrap_or(layer.contrast);
+        let step = layer.main_step();
         Self {
             verdict: layer.verdict.words(),
             from_n: step.from_n,

@@ -4,7 +4,7 @@ use frixel_scene::LayerTitle;
 
 use crate::judge::{
     AlikeLayers, BorderStep, BurstTimes, Judgement, LayerVerdict, MAYBE, Over, Reason, SizeLimit, Step,
-    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, listed_briefly, texture_range_n, weber_steps_text,
+    THRESHOLD_UNCERTAINTY, Texture, VOLTAGE_DIFFERENCE_DB, Verdict, listed_briefly, weber_steps_text,
 };
 
 /// Largest number of lines about elements; the others are summarised in one line. With the costs, the output fits 40
@@ -37,7 +37,7 @@ struct Finding {
 /// elements with the same perception. Indistinguishable layers and notes follow.
 pub fn lines(judgement: &Judgement) -> Vec<Line> {
     let mut elements: Vec<Finding> = judgement.layers.iter().flat_map(elements).collect();
-    elements.sort_by_key(|element| element.verdict.sureness());
+    elements.sort_by_key(|element| element.verdict);
     let has_maybe = elements.iter().any(|element| element.verdict == Verdict::Maybe);
     let groups = grouped(elements);
     let mut lines: Vec<Line> = groups.iter().map(Group::line).collect();
@@ -75,7 +75,7 @@ pub fn sentence(layer: &LayerVerdict) -> String {
 fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Finding> {
     let title = &layer.layer;
     let whole = Finding { layer: title.clone(), part: "", verdict: layer.verdict, text: reasons(layer) };
-    let click = layer.click.filter(|click| click.verdict.sureness() < layer.verdict.sureness());
+    let click = layer.click.filter(|click| click.verdict < layer.verdict);
     let click = click.map(|click| Finding {
         layer: title.clone(),
         part: "click of ",
@@ -183,7 +183,7 @@ fn told(layer: &LayerVerdict) -> Vec<String> {
     steps.sort_by(|(one, _), (other, _)| other.weber_steps.abs().total_cmp(&one.weber_steps.abs()));
     // Bursts make a perception less certain than during the burst.
     let surest = layer.click.iter().map(|click| click.verdict).chain(texture.iter().map(|texture| texture.verdict));
-    let surest = Verdict::of_any(surest.chain(steps.iter().map(|(step, _)| step.verdict)));
+    let surest = surest.chain(steps.iter().map(|(step, _)| step.verdict)).fold(Verdict::NotFelt, Verdict::max);
     let mut told: Vec<String> = steps
         .iter()
         .filter(|(step, _)| step.verdict == surest && !(texture.is_some() && step.contrast_n == 0.0))
@@ -213,13 +213,13 @@ fn step_text(step: &Step, place: &str) -> String {
 }
 
 fn texture_text(texture: &Texture) -> String {
-    let Texture { frequency_hz, amplitude_n, natural_noise_n, verdict, .. } = texture;
-    let threshold = match texture_range_n(*frequency_hz) {
+    let Texture { frequency_hz, amplitude_n, threshold_n, natural_noise_n, verdict, .. } = texture;
+    let threshold = match threshold_n {
         None => "with no known threshold".to_owned(),
         Some(_) if *verdict == Verdict::Unknown => {
             format!("less than the finger's own noise of about {} mN", two_digits(1e3 * natural_noise_n))
         }
-        Some([_, threshold_n, _]) => format!(
+        Some(threshold_n) => format!(
             "about {} times the smallest that is felt ({} mN, known within a factor of {THRESHOLD_UNCERTAINTY})",
             two_digits(amplitude_n / threshold_n),
             two_digits(1e3 * threshold_n)

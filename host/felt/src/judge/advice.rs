@@ -1,7 +1,7 @@
 //! Changes of an element that may make it perceptible, in the order in which they are tried.
 
-use frixel_layers::{Blend, Layer, Region};
-use frixel_scene::Program;
+use frixel_layers::{Blend, Edge, Grating, Layer, Record, Region, Rings};
+use frixel_scene::{LayerSetting, Program};
 
 use super::{Element, LayerVerdict, Reason};
 
@@ -44,10 +44,10 @@ pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
     }
 }
 
-/// The element with its layer changed; `None` if it becomes invisible.
-fn changed(element: &Element, text: String, change: impl FnOnce(&mut Program) -> Option<()>) -> Option<Change> {
+/// The element with its record and setting changed; `None` if it becomes invisible.
+fn changed(element: &Element, text: String, change: impl FnOnce(&mut Record, &mut LayerSetting)) -> Option<Change> {
     let mut program = element.program.clone();
-    change(&mut program)?;
+    change(program.records.get_mut(element.layer)?, program.start.get_mut(element.layer)?);
     // The board would otherwise limit its table to the friction of the original scene.
     program.header.electric_friction_max_n = None;
     let Element { burst, is_triggered, .. } = *element;
@@ -56,43 +56,37 @@ fn changed(element: &Element, text: String, change: impl FnOnce(&mut Program) ->
 
 /// The element scaled by `factor`: the wavelength of stripes, the width of a ridge, or the region.
 fn resized(element: &Element, factor: f64) -> Option<Change> {
-    let layer = element.layer;
-    let record = element.record()?;
     let times = |value: f32| f64::from(value) * factor;
     // Round to tenths of a millimetre.
     let rounded_m = |size_m: f64| 1e-4 * (1e4 * size_m).round();
-    let mm = |size_m: f64| format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned();
-    match record.layer {
+    let (field, size_m, layer) = match element.record()?.layer {
         Layer::Edge(edge) => {
             let width_m = rounded_m(times(edge.width_m));
-            changed(element, format!("width_mm = {}", mm(width_m)), |program| {
-                let Layer::Edge(edge) = &mut program.records.get_mut(layer)?.layer else { return None };
-                edge.width_m = width_m as f32;
-                Some(())
-            })
+            ("width_mm", width_m, Layer::Edge(Edge { width_m: width_m as f32, ..edge }))
         }
         Layer::Grating(grating) => {
             let cycles_per_m = f64::from(grating.cycles_per_m_x.hypot(grating.cycles_per_m_y));
             let wavelength_m = rounded_m(factor / cycles_per_m);
             let part = 1.0 / (wavelength_m * cycles_per_m);
-            changed(element, format!("wavelength_mm = {}", mm(wavelength_m)), |program| {
-                let Layer::Grating(grating) = &mut program.records.get_mut(layer)?.layer else { return None };
-                grating.cycles_per_m_x = (f64::from(grating.cycles_per_m_x) * part) as f32;
-                grating.cycles_per_m_y = (f64::from(grating.cycles_per_m_y) * part) as f32;
-                (part.is_finite() && part > 0.0).then_some(())
-            })
+            let scaled = |cycles_per_m: f32| (f64::from(cycles_per_m) * part) as f32;
+            let (cycles_per_m_x, cycles_per_m_y) = (scaled(grating.cycles_per_m_x), scaled(grating.cycles_per_m_y));
+            ("wavelength_mm", wavelength_m, Layer::Grating(Grating { cycles_per_m_x, cycles_per_m_y, ..grating }))
         }
         Layer::Rings(rings) => {
             let wavelength_m = rounded_m(factor / f64::from(rings.cycles_per_m));
-            changed(element, format!("wavelength_mm = {}", mm(wavelength_m)), |program| {
-                let Layer::Rings(rings) = &mut program.records.get_mut(layer)?.layer else { return None };
-                rings.cycles_per_m = (1.0 / wavelength_m) as f32;
-                (wavelength_m > 0.0).then_some(())
-            })
+            let cycles_per_m = (1.0 / wavelength_m) as f32;
+            ("wavelength_mm", wavelength_m, Layer::Rings(Rings { cycles_per_m, ..rings }))
         }
-        _ if factor > 1.0 => enlarged(element, rounded_m, factor),
-        _ => None,
-    }
+        _ if factor > 1.0 => return enlarged(element, rounded_m, factor),
+        _ => return None,
+    };
+    (size_m > 0.0).then_some(())?;
+    changed(element, format!("{field} = {}", tenths_of_mm(size_m)), |record, _| record.layer = layer)
+}
+
+/// A length in millimetres, rounded to tenths.
+fn tenths_of_mm(size_m: f64) -> String {
+    format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned()
 }
 
 /// The element with its region scaled by `factor` around the middle, within the screen.
@@ -116,15 +110,12 @@ fn enlarged(element: &Element, rounded_m: impl Fn(f64) -> f64, factor: f64) -> O
         Region::Ellipse { .. } => Region::Ellipse { x_m, y_m, width_m: new_width_m, height_m: new_height_m },
         _ => Region::Rectangle { x_m, y_m, width_m: new_width_m, height_m: new_height_m },
     };
-    let mm = |size_m: f32| format!("{:.1}", 1e3 * size_m).trim_end_matches(".0").to_owned();
     let sides = [("width_mm", width_m, new_width_m), ("height_mm", height_m, new_height_m)];
     let sides = sides.iter().filter(|(_, before_m, after_m)| after_m > before_m);
-    let text: Vec<String> = sides.map(|(name, _, after_m)| format!("{name} = {}", mm(*after_m))).collect();
+    let text: Vec<String> =
+        sides.map(|(name, _, after_m)| format!("{name} = {}", tenths_of_mm(f64::from(*after_m)))).collect();
     (!text.is_empty()).then_some(())?;
-    changed(element, format!("a region of {}", text.join(", ")), |program| {
-        program.records.get_mut(element.layer)?.region = region;
-        Some(())
-    })
+    changed(element, format!("a region of {}", text.join(", ")), |record, _| record.region = region)
 }
 
 /// The largest gain within the drive's reach.
@@ -149,10 +140,8 @@ fn strongest(element: &Element) -> Option<Change> {
 }
 
 fn gained(element: &Element, gain: f64) -> Option<Change> {
-    changed(element, format!("gain = {gain}"), |program| {
-        program.start.get_mut(element.layer)?.gain = gain as f32;
-        program.records.get_mut(element.layer)?.gain = gain as f32;
-        Some(())
+    changed(element, format!("gain = {gain}"), |record, setting| {
+        (record.gain, setting.gain) = (gain as f32, gain as f32);
     })
 }
 
@@ -170,22 +159,21 @@ fn widest(element: &Element) -> Option<Change> {
         return None;
     }
     let gain = if element.program.start.get(element.layer)?.gain.total_cmp(&1.0).is_eq() { "" } else { ", gain = 1" };
-    let change = changed(element, format!("{low}_fraction = 0, {high}_fraction = {fraction}{gain}"), |program| {
-        program.start.get_mut(element.layer)?.gain = 1.0;
-        let record = program.records.get_mut(element.layer)?;
-        record.gain = 1.0;
-        let (low_n, high_n) = match &mut record.layer {
-            Layer::Grating(grating) => (&mut grating.trough_n, &mut grating.crest_n),
-            Layer::Rings(rings) => (&mut rings.trough_n, &mut rings.crest_n),
-            Layer::Spokes(spokes) => (&mut spokes.trough_n, &mut spokes.crest_n),
-            Layer::Noise(noise) => (&mut noise.low_n, &mut noise.high_n),
-            Layer::Vibration(vibration) => (&mut vibration.low_n, &mut vibration.high_n),
-            Layer::Button(button) if button.face_n > button.rim_n => (&mut button.rim_n, &mut button.face_n),
-            Layer::Button(button) => (&mut button.face_n, &mut button.rim_n),
-            _ => return None,
-        };
-        (*low_n, *high_n) = (0.0, (fraction * reach_n) as f32);
-        Some(())
+    let mut layer = record.layer;
+    let (low_n, high_n) = match &mut layer {
+        Layer::Grating(grating) => (&mut grating.trough_n, &mut grating.crest_n),
+        Layer::Rings(rings) => (&mut rings.trough_n, &mut rings.crest_n),
+        Layer::Spokes(spokes) => (&mut spokes.trough_n, &mut spokes.crest_n),
+        Layer::Noise(noise) => (&mut noise.low_n, &mut noise.high_n),
+        Layer::Vibration(vibration) => (&mut vibration.low_n, &mut vibration.high_n),
+        Layer::Button(button) if button.face_n > button.rim_n => (&mut button.rim_n, &mut button.face_n),
+        Layer::Button(button) => (&mut button.face_n, &mut button.rim_n),
+        _ => return None,
+    };
+    (*low_n, *high_n) = (0.0, (fraction * reach_n) as f32);
+    let text = format!("{low}_fraction = 0, {high}_fraction = {fraction}{gain}");
+    let change = changed(element, text, |record, setting| {
+        (record.layer, record.gain, setting.gain) = (layer, 1.0, 1.0);
     })?;
     let Program { start, .. } = &change.element.program;
     change.element.program.clamped_with(start).is_none().then_some(change)

@@ -38,7 +38,7 @@ pub struct AlikeLayers {
 /// that depend on the direction, which differ by it at any strength.
 pub(super) fn of(judged: &[Judged], program: &Program) -> Vec<AlikeLayers> {
     let mut groups: Vec<(&Judged, usize)> = Vec::new();
-    for layer in judged.iter().filter(|(_, found)| found.verdict.sureness() > Verdict::Unknown.sureness()) {
+    for layer in judged.iter().filter(|(_, found)| found.verdict > Verdict::Unknown) {
         match groups.iter_mut().find(|((first, _), _)| first.has_parameters_of(&layer.0)) {
             Some((_, copies)) => *copies += 1,
             None => groups.push((layer, 0)),

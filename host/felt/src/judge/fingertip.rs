@@ -31,13 +31,7 @@ impl Fingertip {
 
     /// Averages the values of a range over the fingertip's resolution, within the range.
     pub(super) fn smoothed(&self, values: &[f64], range: Range<usize>) -> Vec<f64> {
-        let mut sum = 0.0;
-        let sums: Vec<f64> = std::iter::once(0.0)
-            .chain(values.iter().map(|value| {
-                sum += value;
-                sum
-            }))
-            .collect();
+        let sums = running_sums(values);
         let mean = |window: &Range<usize>| {
             let (from, to) = (window.start.max(range.start), window.end.min(range.end));
             let [from_sum, to_sum] = [from, to].map(|number| sums.get(number).copied().unwrap_or_default());
@@ -45,4 +39,13 @@ impl Fingertip {
         };
         self.windows.get(range.clone()).unwrap_or_default().iter().map(mean).collect()
     }
+}
+
+/// The sums of the first values, from none to all.
+pub(super) fn running_sums(values: &[f64]) -> Vec<f64> {
+    let sums = values.iter().scan(0.0, |sum, value| {
+        *sum += value;
+        Some(*sum)
+    });
+    std::iter::once(0.0).chain(sums).collect()
 }

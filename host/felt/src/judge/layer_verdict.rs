@@ -99,6 +99,12 @@ impl LayerVerdict {
         }
     }
 
+    /// The step that stands for the layer: the more certainly felt one of its contrast and its border.
+    pub fn main_step(&self) -> Step {
+        let border = self.border.as_ref().map(|border| border.step);
+        border.into_iter().chain([self.contrast]).max_by(Step::cmp_felt).unwrap_or(self.contrast)
+    }
+
     /// The same verdict for a copy of the layer.
     pub(super) fn of_copy(&self, copy: &Element) -> Self {
         let visible = self.scene.visible & !(1 << self.scene.layer) | 1 << copy.layer;

@@ -51,14 +51,8 @@ pub use reason::{Reason, SizeLimit};
 pub(crate) use spectrum::component_power;
 pub use step::{BorderStep, BurstTimes, Level, Over, Step, Texture};
 use step::{contrast_within, has_texture, texture_component, total_n, visible_layers};
-pub(crate) use thresholds::{MAYBE, VOLTAGE_DIFFERENCE_DB, natural_noise_amplitude_n, texture_range_n};
-pub use thresholds::{
-    NATURAL_NOISE_RMS_N, THRESHOLD_UNCERTAINTY, Verdict, WEBER_FRACTION, texture_threshold_n, weber_steps,
-    weber_steps_safe, weber_steps_text,
-};
-
-/// Sampling rate of the friction along a stroke, Hz: four times the highest frequency with a threshold.
-pub(crate) const SAMPLE_HZ: f64 = 2000.0;
+pub(crate) use thresholds::{MAYBE, THRESHOLD_UNCERTAINTY, VOLTAGE_DIFFERENCE_DB, natural_noise_amplitude_n};
+pub use thresholds::{NATURAL_NOISE_RMS_N, Verdict, WEBER_FRACTION, weber_steps, weber_steps_safe, weber_steps_text};
 
 /// Whether a judgement includes advice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -285,7 +279,8 @@ impl Measured {
 
     /// The most certain way in which it is perceived.
     fn verdict(&self) -> Verdict {
-        Verdict::of_any(self.steps().map(|step| step.verdict).chain(self.texture.map(|texture| texture.verdict)))
+        let verdicts = self.steps().map(|step| step.verdict).chain(self.texture.map(|texture| texture.verdict));
+        verdicts.fold(Verdict::NotFelt, Verdict::max)
     }
 
     /// Orders by certainty of perception, and then by size.
@@ -293,8 +288,7 @@ impl Measured {
         let size = |measured: &Self| {
             felt_size(measured.steps().map(|step| step.weber_steps.abs()).fold(0.0, f64::max), measured.texture)
         };
-        let by_verdict = self.verdict().sureness().cmp(&other.verdict().sureness());
-        by_verdict.then(size(self).total_cmp(&size(other)))
+        self.verdict().cmp(&other.verdict()).then(size(self).total_cmp(&size(other)))
     }
 }
 

@@ -3,11 +3,11 @@
 use frixel_scene::Program;
 use frixel_scene::reference::{Context, Reference, direction_of};
 
-use super::{SAMPLE_HZ, visible_layers};
+use super::visible_layers;
 use crate::fidelity::{self, FidelitySample, settled};
 
-/// Moments per second: the same rate as for judging a program before it is played.
-pub(super) const MOMENT_HZ: f64 = SAMPLE_HZ;
+/// Moments per second: four times the highest frequency with a threshold.
+pub(super) const MOMENT_HZ: f64 = 2000.0;
 /// Samples per moment.
 const SAMPLES: usize = (fidelity::SAMPLE_HZ / MOMENT_HZ) as usize;
 

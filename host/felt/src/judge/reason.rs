@@ -82,23 +82,22 @@ impl Reason {
 pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (Verdict, Vec<Reason>) {
     let verdict = felt.verdict();
     let scene = felt.scene;
-    let is_surer = |other: Verdict| is_surer_than(other, verdict);
     let steps = |step: &Step| step.weber_steps.abs();
     let extent = of_extent(element, felt);
     let own = match verdict {
-        _ if extent.is_some_and(|most| is_surer_than(verdict, most)) => {
+        _ if extent.is_some_and(|most| verdict > most) => {
             let weber_steps = felt.steps().chain([scene.sharp]).map(|step| steps(&step)).fold(0.0, f64::max);
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps })
         }
         Verdict::Felt => is_buzz(felt).then_some(Reason::Buzz),
-        _ if is_surer(faultless.verdict()) => {
+        _ if faultless.verdict() > verdict => {
             let surest = faultless.steps().max_by(Step::cmp_felt).unwrap_or(faultless.contrast);
             Some(Reason::TooSmall { limit: SizeLimit::TouchSource, weber_steps: steps(&surest) })
         }
-        _ if is_surer(scene.sharp.verdict) && !felt.is_vibration => {
+        _ if scene.sharp.verdict > verdict && !felt.is_vibration => {
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps: steps(&scene.sharp) })
         }
-        _ if is_surer(scene.whole.verdict) && !felt.is_vibration => {
+        _ if scene.whole.verdict > verdict && !felt.is_vibration => {
             Some(Reason::TooSlow { way_mm: 1e3 * WAY_MAX_M, weber_steps: steps(&scene.whole) })
         }
         Verdict::Unknown => Some(Reason::NotStudied),
@@ -113,12 +112,8 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
         .collect();
     let is_short = reasons.iter().any(|reason| matches!(reason, Reason::TooShort { .. }));
     reasons.extend(own.filter(|own| !is_short || *own == Reason::Buzz));
-    let most = reasons.iter().map(Reason::most).chain(extent).chain([verdict]).min_by_key(|most| most.sureness());
-    (most.unwrap_or(verdict), reasons)
-}
-
-fn is_surer_than(one: Verdict, other: Verdict) -> bool {
-    one.sureness() > other.sureness()
+    let most = reasons.iter().map(Reason::most).chain(extent).fold(verdict, Verdict::min);
+    (most, reasons)
 }
 
 /// The most certain verdict on an element smaller than a fingertip's resolution: below half of it, too small; below all

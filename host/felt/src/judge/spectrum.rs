@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::fingertip::running_sums;
 use super::thresholds::{TEXTURE_MIN_HZ, texture_threshold_n};
 use crate::spectrum::Spectrum;
 
@@ -31,12 +32,7 @@ pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64
     }
     let spectrum = Spectrum::of(samples, sample_hz);
     let (power, bin_hz) = (spectrum.power(), spectrum.bin_hz);
-    let cumulative: Vec<f64> = std::iter::once(0.0)
-        .chain(power.iter().scan(0.0, |sum, power| {
-            *sum += power;
-            Some(*sum)
-        }))
-        .collect();
+    let cumulative = running_sums(&power);
     let first = ((TEXTURE_MIN_HZ / bin_hz).ceil() as usize).max(SPREAD_BINS + 1);
     let peaks = (first..power.len()).filter(|bin| is_largest(&power, *bin));
     let power_min = POWER_PART_MIN * cumulative.last().copied().unwrap_or_default();

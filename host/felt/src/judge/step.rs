@@ -7,8 +7,9 @@ use frixel_scene::reference::Reference;
 use frixel_scene::{LayerTitle, Program};
 use serde::Serialize;
 
-use super::thresholds::lag_gain;
-use super::{SAMPLE_HZ, Verdict, natural_noise_amplitude_n, spectrum, texture_threshold_n, weber_steps};
+use super::moment::MOMENT_HZ;
+use super::thresholds::{lag_gain, texture_threshold_n};
+use super::{Verdict, natural_noise_amplitude_n, spectrum, weber_steps};
 use crate::percentile::percentiles;
 
 /// Smallest amplitude of a reported texture, N: a tenth of the smallest threshold.
@@ -67,8 +68,7 @@ impl Step {
 
     /// Orders steps by certainty of perception, and then by size.
     pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
-        let by_verdict = self.verdict.sureness().cmp(&other.verdict.sureness());
-        by_verdict.then(self.weber_steps.abs().total_cmp(&other.weber_steps.abs()))
+        self.verdict.cmp(&other.verdict).then(self.weber_steps.abs().total_cmp(&other.weber_steps.abs()))
     }
 }
 
@@ -152,7 +152,7 @@ impl Texture {
 /// most noticeable after that lag.
 pub(super) fn texture_component(friction_n: &[f64], speed_mm_per_s: f64) -> Option<(f64, f64)> {
     let behind_lag = |frequency_hz: f64| lag_gain(speed_mm_per_s / frequency_hz);
-    let component = spectrum::most_noticeable(friction_n, SAMPLE_HZ, behind_lag)?;
+    let component = spectrum::most_noticeable(friction_n, MOMENT_HZ, behind_lag)?;
     Some((component.frequency_hz, component.amplitude / behind_lag(component.frequency_hz)))
 }
 

@@ -54,25 +54,25 @@ const TANGENTIAL_DAMPING_N_S_PER_M: f64 = 1.5;
 
 /// Factor by which the threshold may be wrong in either direction: people differ by a factor of 2, and the thresholds
 /// were measured with a vibrating probe, not with friction. Assumed.
-pub const THRESHOLD_UNCERTAINTY: f64 = 3.0;
+pub(crate) const THRESHOLD_UNCERTAINTY: f64 = 3.0;
 
 /// Meaning of *maybe* for users. It is a range of contrast: from the smallest to the largest Weber fraction of the
 /// studies, or a factor of 3 on both sides of a texture's threshold. No study gives the distribution of thresholds
 /// among people.
 pub(crate) const MAYBE: &str = "maybe: near the threshold, where some people or some strokes will not notice it";
 
-/// Whether a person perceives something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Whether a person perceives something, ordered by certainty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Too small for anyone in the studies.
     NotFelt,
+    /// No study covers it.
+    Unknown,
     /// Near the threshold, where some people or some strokes will not notice it.
     Maybe,
     /// Felt by everyone in the studies.
     Felt,
-    /// No study covers it.
-    Unknown,
 }
 
 impl Verdict {
@@ -87,7 +87,7 @@ impl Verdict {
     }
 
     /// Judges a texture of an amplitude in newtons at a frequency.
-    pub fn of_texture(amplitude_n: f64, frequency_hz: f64) -> Self {
+    pub(super) fn of_texture(amplitude_n: f64, frequency_hz: f64) -> Self {
         let Some(threshold_n) = texture_threshold_n(frequency_hz) else { return Self::Unknown };
         if amplitude_n < threshold_n / THRESHOLD_UNCERTAINTY {
             Self::NotFelt
@@ -98,21 +98,6 @@ impl Verdict {
             Self::Unknown
         } else {
             Self::Felt
-        }
-    }
-
-    /// The most certain of several verdicts; *not felt* is the least certain.
-    pub fn of_any(verdicts: impl IntoIterator<Item = Self>) -> Self {
-        verdicts.into_iter().max_by_key(|verdict| verdict.sureness()).unwrap_or(Self::NotFelt)
-    }
-
-    /// Rank of certainty: *not felt*, *unknown*, *maybe*, *felt*.
-    pub(crate) fn sureness(self) -> u8 {
-        match self {
-            Self::NotFelt => 0,
-            Self::Unknown => 1,
-            Self::Maybe => 2,
-            Self::Felt => 3,
         }
     }
 
@@ -168,22 +153,13 @@ pub fn weber_steps_safe() -> f64 {
 ///
 /// It is the displacement threshold times the magnitude of the fingertip's tangential impedance, `|k + 2 pi i f c|`,
 /// interpolated in the logarithms of frequency and displacement. It holds within a factor of 3.
-pub fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
-    let pair = DISPLACEMENT_THRESHOLD_UM.windows(2).find_map(|pair| match pair {
-        [from, to] if (from.0..=to.0).contains(&frequency_hz) => Some((*from, *to)),
-        _ => None,
-    });
-    let ((from_hz, from_um), (to_hz, to_um)) = pair?;
+pub(super) fn texture_threshold_n(frequency_hz: f64) -> Option<f64> {
+    let mut pairs = DISPLACEMENT_THRESHOLD_UM.array_windows();
+    let [(from_hz, from_um), (to_hz, to_um)] = pairs.find(|[from, to]| (from.0..=to.0).contains(&frequency_hz))?;
     let part = libm::log(frequency_hz / from_hz) / libm::log(to_hz / from_hz);
     let displacement_m = 1e-6 * from_um * libm::pow(to_um / from_um, part);
     let damping_n_per_m = std::f64::consts::TAU * frequency_hz * TANGENTIAL_DAMPING_N_S_PER_M;
     Some(displacement_m * libm::hypot(TANGENTIAL_STIFFNESS_N_PER_M, damping_n_per_m))
-}
-
-/// Lower bound, nominal value and upper bound of the threshold, N.
-pub(crate) fn texture_range_n(frequency_hz: f64) -> Option<[f64; 3]> {
-    let threshold_n = texture_threshold_n(frequency_hz)?;
-    Some([threshold_n / THRESHOLD_UNCERTAINTY, threshold_n, threshold_n * THRESHOLD_UNCERTAINTY])
 }
 
 /// Amplitude of a sine with the power of a finger's own friction noise in the third of an octave around a frequency, N.

@@ -73,20 +73,12 @@ impl Sums {
 
 /// The longest ranges of a run whose moments all satisfy `is_wanted`.
 pub(super) fn stretches(run: &[Moment], is_wanted: impl Fn(&Moment) -> bool) -> Vec<Range<usize>> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for (number, moment) in run.iter().enumerate() {
-        match (is_wanted(moment), start) {
-            (true, None) => start = Some(number),
-            (false, Some(first)) => {
-                found.push(first..number);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found.extend(start.map(|first| first..run.len()));
-    found
+    let parts = run.chunk_by(|one, other| is_wanted(one) == is_wanted(other));
+    let ranges = parts.scan(0, |end, part| {
+        *end += part.len();
+        Some(part.first().is_some_and(&is_wanted).then_some(*end - part.len()..*end))
+    });
+    ranges.flatten().collect()
 }
 
 /// The moments of a range farther from both ends than a fingertip's resolution.

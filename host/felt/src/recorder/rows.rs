@@ -90,7 +90,7 @@ impl Frictions {
 ///
 /// With one row per millisecond and a carrier of 1 kHz, felt friction is the mean over a carrier period, and thus
 /// independent of the carrier's phase at the end of the row.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct RowMaker {
     tick_period_s: f64,
     ticks_per_row: u64,
@@ -108,18 +108,8 @@ pub(super) struct RowMaker {
 
 impl RowMaker {
     pub(super) fn new(tick_hz: u32, ticks_per_row: u32) -> Self {
-        Self {
-            tick_period_s: 1.0 / f64::from(tick_hz),
-            ticks_per_row: u64::from(ticks_per_row.max(1)),
-            row_end: 0,
-            row: FeltRow::default(),
-            reference: Mean::default(),
-            commanded: Mean::default(),
-            felt: Mean::default(),
-            natural: Mean::default(),
-            electrode_v2: Mean::default(),
-            is_tracked: false,
-        }
+        let (tick_period_s, ticks_per_row) = (1.0 / f64::from(tick_hz), u64::from(ticks_per_row.max(1)));
+        Self { tick_period_s, ticks_per_row, ..Self::default() }
     }
 
     /// Adds an observation `ticks` ticks after time zero. Returns the row that it completes.

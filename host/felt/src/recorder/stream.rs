@@ -10,7 +10,7 @@ const START_MISSED_AFTER_S: f64 = 0.05;
 
 /// A stream in progress. A flag of the board reports whether it plays or waits for samples. While it plays, its value
 /// is interpolated linearly between the host's samples.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Stream {
     tick_hz: f64,
     /// Samples from the current one on; `first_index` is the index of the first.
@@ -30,9 +30,10 @@ pub(super) struct Stream {
     ticks_with_samples: u32,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
     /// There is no stream, or it is over.
+    #[default]
     Over,
     /// The host has started the stream, but the board has not reported yet that it waits for samples.
     Requested,
@@ -45,18 +46,7 @@ enum Phase {
 
 impl Stream {
     pub(super) fn new(tick_hz: u32) -> Self {
-        Self {
-            tick_hz: f64::from(tick_hz),
-            samples: VecDeque::new(),
-            first_index: 0,
-            samples_per_tick: 0.0,
-            phase: Phase::Over,
-            place: 0.0,
-            ended: false,
-            weight: 0.0,
-            dry: false,
-            ticks_with_samples: 0,
-        }
+        Self { tick_hz: f64::from(tick_hz), ..Self::default() }
     }
 
     /// Starts a stream of `sample_hz` samples per second.
