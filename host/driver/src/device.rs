@@ -106,7 +106,7 @@ impl<L: Link> Device<L> {
     /// A working board answers within milliseconds. A program that stops a board on request should therefore break off
     /// a wait only after a second or so.
     pub fn while_waiting(&mut self, watcher: impl FnMut(&Waiting) -> ControlFlow<()> + Send + 'static) {
-        self.exchange.set_watcher(Box::new(watcher));
+        self.exchange.watcher = Some(Box::new(watcher));
     }
 
     /// The hello sent by the board.
@@ -138,7 +138,7 @@ impl<L: Link> Device<L> {
         if missing.is_empty() {
             return Ok(());
         }
-        let port = self.exchange.link().name().into();
+        let port = self.exchange.link.name().into();
         Err(DeviceError::MissingFeatures { port, missing: missing.join(" and "), firmware, protocol })
     }
 
@@ -244,12 +244,12 @@ impl<L: Link> Device<L> {
     ///
     /// Returns early with [`DeviceError::Silent`] if the board no longer answers pings.
     pub fn wait(&mut self, duration: Duration, on_event: &mut dyn FnMut(Event)) -> Result<(), DeviceError> {
-        let end = self.exchange.now() + duration;
+        let end = self.exchange.link.now() + duration;
         loop {
-            while let Some(event) = self.exchange.next_event() {
+            while let Some(event) = self.exchange.events.pop_front() {
                 on_event(event);
             }
-            let now = self.exchange.now();
+            let now = self.exchange.link.now();
             if now >= end {
                 return Ok(());
             }
@@ -279,12 +279,12 @@ impl<L: Link> Device<L> {
 
     /// Time on the link's clock.
     pub fn now(&self) -> Duration {
-        self.exchange.now()
+        self.exchange.link.now()
     }
 
     /// Counts of frames and bytes since the link was opened.
     pub fn counters(&self) -> Counters {
-        let written = self.exchange.link().written();
+        let written = self.exchange.link.written();
         Counters {
             frames_sent: written.frames,
             frames_rejected: u64::from(self.exchange.frames_rejected()) + self.uploads.chunks_lost,
@@ -295,13 +295,13 @@ impl<L: Link> Device<L> {
 
     /// The underlying link, for methods of its own type. [`Device`] continues to use it.
     pub fn link_mut(&mut self) -> &mut L {
-        self.exchange.link_mut()
+        &mut self.exchange.link
     }
 
     /// Returns the link without disarming the board. The link continues to ping until its keep-alive timeout. After
     /// [`Self::arm`] or [`Self::play`] it stops and disarms the board when it is dropped.
     pub fn into_link(self) -> L {
-        self.exchange.into_link()
+        self.exchange.link
     }
 
     /// Prepares the link to ping the board, and to stop and disarm it when dropped.
@@ -316,7 +316,7 @@ impl<L: Link> Device<L> {
     /// timeout may be the shortest one.
     fn pace_pings(&mut self) {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
-        self.exchange.ping_every(period);
+        self.exchange.link.keep_alive(period);
     }
 
     fn request(&mut self, command: Command) -> Result<(), DeviceError> {

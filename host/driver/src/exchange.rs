@@ -62,27 +62,29 @@ pub(super) type Watcher = Box<dyn FnMut(&Waiting) -> ControlFlow<()> + Send>;
 
 /// The connection to a board that has answered the hello, with everything in transit in both directions.
 pub(super) struct Exchange<L> {
-    link: L,
+    pub(super) link: L,
     decoder: Decoder,
     /// Frames rejected by the decoder before the hello, left over from an earlier connection.
     rejected_before: u32,
     incoming: Vec<u8>,
-    credit: Credit,
+    pub(super) credit: Credit,
     sequence: u16,
     awaited: Vec<Awaited>,
     answer: Option<Answer>,
-    /// Whether the last answer was to a resent request.
-    repeated: bool,
-    next_chunk: Option<u16>,
-    stream: Option<StreamReport>,
+    /// Whether the last answer was to a resent request, which the board may have executed twice.
+    pub(super) repeated: bool,
+    /// The chunk that the board expects next, until an upload takes it.
+    pub(super) next_chunk: Option<u16>,
+    /// The board's last report on the stream.
+    pub(super) stream: Option<StreamReport>,
     /// Whether the next answer starts a new stream, so that earlier reports belong to the old one.
-    stream_begins: bool,
-    events: VecDeque<Event>,
+    pub(super) stream_begins: bool,
+    pub(super) events: VecDeque<Event>,
     /// Tick of the last telemetry message.
     telemetry_tick: Option<u32>,
     /// Time spent reading since the last received bytes.
     quiet: Duration,
-    watcher: Option<Watcher>,
+    pub(super) watcher: Option<Watcher>,
 }
 
 /// A request that waits for its answer.
@@ -115,39 +117,9 @@ impl<L: Link> Exchange<L> {
         }
     }
 
-    pub(super) fn link(&self) -> &L {
-        &self.link
-    }
-
-    pub(super) fn link_mut(&mut self) -> &mut L {
-        &mut self.link
-    }
-
-    pub(super) fn into_link(self) -> L {
-        self.link
-    }
-
     /// Number of damaged frames from the board since the hello.
     pub(super) fn frames_rejected(&self) -> u32 {
         self.decoder.rejected().wrapping_sub(self.rejected_before)
-    }
-
-    pub(super) fn next_event(&mut self) -> Option<Event> {
-        self.events.pop_front()
-    }
-
-    pub(super) fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    /// Sets the ping period.
-    pub(super) fn ping_every(&mut self, period: Duration) {
-        self.link.keep_alive(period);
-    }
-
-    /// Sets a watcher of waiting calls.
-    pub(super) fn set_watcher(&mut self, watcher: Watcher) {
-        self.watcher = Some(watcher);
     }
 
     /// Calls the watcher, and returns the time until its next call.
@@ -182,14 +154,6 @@ impl<L: Link> Exchange<L> {
 
     pub(super) fn stalled(&self, arrived_bytes: usize, total_bytes: usize) -> DeviceError {
         DeviceError::UploadStalled { port: self.link.name().into(), arrived_bytes, total_bytes }
-    }
-
-    pub(super) fn slow_upload(&self, arrived_bytes: usize, total_bytes: usize, waited: Duration) -> DeviceError {
-        DeviceError::UploadTooSlow { port: self.link.name().into(), arrived_bytes, total_bytes, waited }
-    }
-
-    pub(super) fn forgotten(&self, total_bytes: usize, times: u32) -> DeviceError {
-        DeviceError::UploadForgotten { port: self.link.name().into(), total_bytes, times }
     }
 
     pub(super) fn interrupted(&self) -> DeviceError {
@@ -272,16 +236,11 @@ impl<L: Link> Exchange<L> {
         Ok(true)
     }
 
-    /// Whether the last answer was to a resent command, which the board may have executed twice.
-    pub(super) fn repeated(&self) -> bool {
-        self.repeated
-    }
-
     /// The outcome of a command. A resent command may be refused if the board executed the first copy, and only its
     /// answer was lost.
     fn outcome(&self, command: Command, answer: &Answer) -> Result<Accepted, Refusal> {
         match answer.outcome {
-            Err(Refusal::WrongState(state)) if self.repeated() && state_after(&command) == Some(state) => {
+            Err(Refusal::WrongState(state)) if self.repeated && state_after(&command) == Some(state) => {
                 Ok(Accepted::Done)
             }
             outcome => outcome,
@@ -307,26 +266,6 @@ impl<L: Link> Exchange<L> {
             return Ok(None);
         }
         self.write(frame, doing).map(Some)
-    }
-
-    /// Position up to which bytes have reached the board or are lost.
-    pub(super) fn settled(&self) -> u64 {
-        self.credit.settled()
-    }
-
-    /// The number of the chunk that the board expects next, if it has reported one since the last call.
-    pub(super) fn take_next_chunk(&mut self) -> Option<u16> {
-        self.next_chunk.take()
-    }
-
-    /// The board's last report on the stream.
-    pub(super) fn stream(&self) -> Option<StreamReport> {
-        self.stream
-    }
-
-    /// Announces that the next request starts a stream.
-    pub(super) fn begin_stream(&mut self) {
-        self.stream_begins = true;
     }
 
     fn write(&mut self, frame: &[u8], doing: &'static str) -> Result<u64, DeviceError> {

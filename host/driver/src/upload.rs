@@ -178,8 +178,8 @@ struct Transfer<'a, L> {
 
 impl<'a, L: Link> Transfer<'a, L> {
     fn new(exchange: &'a mut Exchange<L>, doing: &'static str, bytes: &'a [u8]) -> Self {
-        exchange.take_next_chunk();
-        let advanced_at = exchange.now();
+        exchange.next_chunk = None;
+        let advanced_at = exchange.link.now();
         Self {
             exchange,
             doing,
@@ -199,12 +199,12 @@ impl<'a, L: Link> Transfer<'a, L> {
             self.send_chunks(report)?;
             match self.exchange.try_request(Command::UploadEnd)? {
                 Ok(_) => return Ok(End::Arrived),
-                Err(Refusal::UploadIncomplete { next_chunk: 0 }) if self.exchange.repeated() => {
+                Err(Refusal::UploadIncomplete { next_chunk: 0 }) if self.exchange.repeated => {
                     return Ok(End::Unknown);
                 }
                 Err(Refusal::UploadIncomplete { next_chunk }) => {
                     // Discard a report sent before the answer, since further chunks have arrived.
-                    self.exchange.take_next_chunk();
+                    self.exchange.next_chunk = None;
                     self.send_again_from(next_chunk)?;
                 }
                 Err(refusal) => return Err(self.exchange.refused(&Command::UploadEnd, refusal)),
@@ -217,10 +217,10 @@ impl<'a, L: Link> Transfer<'a, L> {
     /// upload, as after the last chunk. If that is too early, the board's refusal contains the next expected chunk. Any
     /// answer corrects the credit.
     fn send_chunks(&mut self, report: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Result<(), DeviceError> {
-        let mut sent_at = self.exchange.now();
-        while self.next < self.chunk_count() && self.exchange.now().saturating_sub(sent_at) < STALL_AFTER {
+        let mut sent_at = self.exchange.link.now();
+        while self.next < self.chunk_count() && self.exchange.link.now().saturating_sub(sent_at) < STALL_AFTER {
             let wait = if self.send_next()? {
-                sent_at = self.exchange.now();
+                sent_at = self.exchange.link.now();
                 Duration::ZERO
             } else {
                 STALL_AFTER
@@ -235,9 +235,14 @@ impl<'a, L: Link> Transfer<'a, L> {
 
     /// Fails if the board has not acknowledged a byte of an upload for too long. Returns the time until the next check.
     fn check_advance(&mut self) -> Result<Duration, DeviceError> {
-        let waited = self.exchange.now().saturating_sub(self.advanced_at);
+        let waited = self.exchange.link.now().saturating_sub(self.advanced_at);
         if waited >= ACKNOWLEDGE_TIMEOUT {
-            return Err(self.exchange.slow_upload(self.arrived_bytes(), self.bytes.len(), waited));
+            return Err(DeviceError::UploadTooSlow {
+                port: self.exchange.link.name().into(),
+                arrived_bytes: self.arrived_bytes(),
+                total_bytes: self.bytes.len(),
+                waited,
+            });
         }
         self.exchange.watch(&Waiting { command: self.doing, waited, waited_max: ACKNOWLEDGE_TIMEOUT })
     }
@@ -276,11 +281,11 @@ impl<'a, L: Link> Transfer<'a, L> {
 
     /// Handles the board's last report. An expected chunk that has already left the line was lost.
     fn handle_progress(&mut self) -> Result<(), DeviceError> {
-        let Some(expected) = self.exchange.take_next_chunk() else {
+        let Some(expected) = self.exchange.next_chunk.take() else {
             return Ok(());
         };
         self.set_expected(expected);
-        let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.settled();
+        let off_the_line = |sent_to: &u64| *sent_to <= self.exchange.credit.settled();
         if self.expected < self.next && self.sent_to.get(self.expected).is_some_and(off_the_line) {
             self.send_again_from(expected)?;
         }
@@ -291,7 +296,7 @@ impl<'a, L: Link> Transfer<'a, L> {
         let chunk = usize::from(chunk).min(self.chunk_count());
         if chunk > self.furthest {
             (self.furthest, self.tries) = (chunk, 0);
-            self.advanced_at = self.exchange.now();
+            self.advanced_at = self.exchange.link.now();
         }
         self.expected = chunk;
     }
@@ -300,7 +305,8 @@ impl<'a, L: Link> Transfer<'a, L> {
         self.set_expected(chunk);
         self.tries += 1;
         if self.tries > TRIES && self.expected == 0 && self.furthest > 0 {
-            return Err(self.exchange.forgotten(self.bytes.len(), self.tries));
+            let (port, total_bytes, times) = (self.exchange.link.name().into(), self.bytes.len(), self.tries);
+            return Err(DeviceError::UploadForgotten { port, total_bytes, times });
         }
         if self.tries > TRIES {
             return Err(self.exchange.stalled(self.arrived_bytes(), self.bytes.len()));

@@ -73,7 +73,7 @@ impl<L: Link> Device<L> {
     /// ```
     pub fn start_stream(&mut self, settings: StreamSettings) -> Result<(), DeviceError> {
         let StreamSettings { sample_hz, start_level } = settings;
-        self.exchange.begin_stream();
+        self.exchange.stream_begins = true;
         self.request(Command::StartStream { sample_hz, start_level })?;
         self.stream = Some(StreamProgress::default());
         Ok(())
@@ -85,7 +85,7 @@ impl<L: Link> Device<L> {
     /// Sends nothing if no stream is under way.
     pub fn send_samples(&mut self, samples: &[u16]) -> Result<usize, DeviceError> {
         self.exchange.receive(Duration::ZERO, STREAMING)?;
-        let (Some(mut sent), Some(report)) = (self.stream, self.exchange.stream()) else { return Ok(0) };
+        let (Some(mut sent), Some(report)) = (self.stream, self.exchange.stream) else { return Ok(0) };
         sent.first.get_or_insert(report);
         let mut done = 0;
         for frame in samples.chunks(SAMPLES_MAX) {
@@ -114,7 +114,7 @@ impl<L: Link> Device<L> {
     /// The state of the last stream; `None` before the first one.
     pub fn stream_status(&self) -> Option<StreamStatus> {
         let StreamProgress { samples, first } = self.stream?;
-        let (Some(first), Some(now)) = (first, self.exchange.stream()) else {
+        let (Some(first), Some(now)) = (first, self.exchange.stream) else {
             return Some(StreamStatus { sent: samples, ..StreamStatus::default() });
         };
         Some(StreamStatus {
