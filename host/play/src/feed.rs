@@ -19,7 +19,9 @@ const END_S: f64 = 0.05;
 /// A sample is a `u16`: 0 stands for the layer's low friction, 65,535 for its high friction.
 pub struct Feed {
     settings: StreamSettings,
-    source: Source,
+    fetch: Fetch,
+    /// Number of samples, if it is known beforehand.
+    samples: Option<u64>,
     pending: Vec<u16>,
     /// Time on the link's clock when the stream started.
     started_at: Option<Duration>,
@@ -32,12 +34,6 @@ type SourceError = Box<dyn Error + Send + Sync>;
 
 /// Appends samples up to a given number, or as many as are available. Returns false after the last one.
 type Fetch = Box<dyn FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError>>;
-
-enum Source {
-    /// All samples, and the number already taken.
-    Samples(Vec<u16>, usize),
-    Fetched(Fetch),
-}
 
 /// Why samples could not be streamed to their end.
 #[derive(Debug, Error)]
@@ -53,7 +49,13 @@ pub enum FeedError {
 impl Feed {
     /// Creates a feed from samples in memory.
     pub fn of(samples: Vec<u16>, sample_hz: u32) -> Self {
-        Self::new(Source::Samples(samples, 0), sample_hz)
+        let count = samples.len() as u64;
+        let mut samples = samples.into_iter();
+        let feed = Self::fetched(sample_hz, move |pending, len| {
+            pending.extend(samples.by_ref().take(len.saturating_sub(pending.len())));
+            Ok(samples.len() > 0)
+        });
+        Self { samples: Some(count), ..feed }
     }
 
     /// Creates a feed of samples that become available during the play.
@@ -64,12 +66,8 @@ impl Feed {
         sample_hz: u32,
         fetch: impl FnMut(&mut Vec<u16>, usize) -> Result<bool, SourceError> + 'static,
     ) -> Self {
-        Self::new(Source::Fetched(Box::new(fetch)), sample_hz)
-    }
-
-    fn new(source: Source, sample_hz: u32) -> Self {
-        let settings = StreamSettings::new(sample_hz);
-        Self { settings, source, pending: Vec::new(), started_at: None, ended_at: None }
+        let (settings, fetch) = (StreamSettings::new(sample_hz), Box::new(fetch));
+        Self { settings, fetch, samples: None, pending: Vec::new(), started_at: None, ended_at: None }
     }
 
     /// The sample rate and the start level.
@@ -89,7 +87,7 @@ impl Feed {
     /// milliseconds.
     pub fn pump<L: Link + Recorded>(&mut self, device: &mut Device<L>) -> Result<(), FeedError> {
         while self.ended_at.is_none() {
-            let more = self.fetch()?;
+            let more = (self.fetch)(&mut self.pending, AHEAD).map_err(FeedError::Source)?;
             let sent = device.send_samples(&self.pending)?;
             let taken: Vec<u16> = self.pending.drain(..sent).collect();
             if sent > 0 {
@@ -111,10 +109,7 @@ impl Feed {
     ///
     /// `None` if the samples become available during the play.
     pub fn duration_s(&self) -> Option<f64> {
-        match &self.source {
-            Source::Samples(samples, _) => Some(self.playing_s(samples.len() as u64, 0)),
-            Source::Fetched(_) => None,
-        }
+        self.samples.map(|samples| self.playing_s(samples, 0))
     }
 
     /// Whether the board has played the last sample and has faded out.
@@ -131,20 +126,5 @@ impl Feed {
         let StreamSettings { sample_hz, start_level } = self.settings;
         let filled = f64::from(start_level) * (1.0 + f64::from(underruns));
         (samples as f64 + filled) / f64::from(sample_hz) + END_S
-    }
-
-    /// Reads samples from the source until [`AHEAD`] are pending. Returns whether there may be more.
-    fn fetch(&mut self) -> Result<bool, FeedError> {
-        let wanted = AHEAD.saturating_sub(self.pending.len());
-        match &mut self.source {
-            Source::Samples(samples, taken) => {
-                let rest = samples.get(*taken..).unwrap_or_default();
-                let piece = rest.get(..wanted).unwrap_or(rest);
-                self.pending.extend_from_slice(piece);
-                *taken += piece.len();
-                Ok(*taken < samples.len())
-            }
-            Source::Fetched(fetch) => fetch(&mut self.pending, AHEAD).map_err(FeedError::Source),
-        }
     }
 }

@@ -233,7 +233,7 @@ impl<L: Link + Recorded> Player<L> {
 
     /// Switches triggered layers according to their patterns, and off at the end. [`Self::step`] and [`Self::wait`] do
     /// this as well.
-    pub fn end_triggers(&mut self) -> Result<(), PlayError> {
+    pub(crate) fn end_triggers(&mut self) -> Result<(), PlayError> {
         let now = self.device.now();
         while let Some((record, change)) = self.playing.as_ref().and_then(|layers| layers.next_switch(now)) {
             if let Err(refused) = self.send(&change) {
