@@ -68,6 +68,9 @@ impl TouchConfig {
         ..Self::IDEAL
     };
 
+    /// The name of [`Self::REALISTIC`] among the bundled sources.
+    pub const REALISTIC_NAME: &'static str = "100";
+
     /// The bundled source of a name, which is its number of reports per second: `100` with a latency of 10 ms, which is
     /// [`Self::REALISTIC`]; `200` with 5 ms; `500` with 3 ms. Their jitter is 5 % of the period; losses, noise and
     /// resolution are the same.
@@ -89,7 +92,8 @@ impl TouchConfig {
 }
 
 /// Name, reports per second and latency in seconds of the bundled sources.
-const BUNDLED: [(&str, f64, f64); 3] = [("100", 100.0, 10e-3), ("200", 200.0, 5e-3), ("500", 500.0, 3e-3)];
+const BUNDLED: [(&str, f64, f64); 3] =
+    [(TouchConfig::REALISTIC_NAME, 100.0, 10e-3), ("200", 200.0, 5e-3), ("500", 500.0, 3e-3)];
 
 impl Default for TouchConfig {
     /// [`Self::IDEAL`].

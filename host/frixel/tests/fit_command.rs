@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use frixel_hil_sim::Person;
-use frixel_lab::fit::{self, Settings, Summary};
+use frixel_lab::fit::{self, Settings};
 use frixel_scene::{Evidence, FingerProfile, Profile, Screen};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -50,7 +50,7 @@ fn a_calibrated_person_is_recovered() {
         seed: 1,
     };
     let rows = fit::rows(fs::File::open(folder.path().join("data.csv")).unwrap()).unwrap().value;
-    let summary = serde_json::json!(Summary::from(&fit::fit(rows, &settings).unwrap()));
+    let summary = fit::fit(rows, &settings).unwrap().json();
     assert_eq!(json.trim_end(), summary.to_string());
 
     let person = Person::drawn(5);

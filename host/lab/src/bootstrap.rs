@@ -35,17 +35,9 @@ pub(crate) const GROUP_MIN: usize = 3;
 
 /// Values in groups. A draw takes as many values from each group as it has.
 pub(crate) struct Draws {
+    /// Empty if the draws are of errors, which vary as much as they should. Draws of few values vary less.
     groups: Vec<Vec<usize>>,
     random: Pcg64,
-    expansion: Expansion,
-}
-
-/// Kind of the draws, which determines how intervals are expanded.
-enum Expansion {
-    /// The draws are of values: few of them vary less than they should.
-    Values,
-    /// The draws are of errors, and vary as much as they should.
-    Errors,
 }
 
 impl Draws {
@@ -73,17 +65,17 @@ impl Draws {
                 group.extend(joined);
             }
         }
-        Self { groups, random: Pcg64::seed_from_u64(seed), expansion: Expansion::Values }
+        Self { groups, random: Pcg64::seed_from_u64(seed) }
     }
 
     /// Creates draws of values from the distributions of their errors.
     pub(crate) fn of_errors() -> Self {
-        Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0), expansion: Expansion::Errors }
+        Self { groups: Vec::new(), random: Pcg64::seed_from_u64(0) }
     }
 
     /// Draws the indices of values, with replacement.
     pub(crate) fn draw(&mut self) -> Vec<usize> {
-        let Self { groups, random, .. } = self;
+        let Self { groups, random } = self;
         let mut drawn = Vec::new();
         for group in groups {
             // The product with a random number of 32 bits keeps its upper half, evenly spread to 1 in 2^32.
@@ -127,11 +119,8 @@ impl Draws {
     /// are those of the smallest group: electric friction depends on the strokes of the highest voltage, and an
     /// exponent on those of the voltage with the fewest.
     pub(crate) fn expanded(&self, z: f64) -> f64 {
-        match self.expansion {
-            Expansion::Values => {}
-            Expansion::Errors => return z,
-        }
-        let smallest = self.groups.iter().map(Vec::len).min().unwrap_or_default() as f64;
+        let Some(smallest) = self.groups.iter().map(Vec::len).min() else { return z };
+        let smallest = smallest as f64;
         (smallest / (smallest - 1.0)).sqrt() * student_quantile(z, smallest - 1.0)
     }
 }

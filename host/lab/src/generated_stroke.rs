@@ -49,7 +49,7 @@ impl GeneratedStroke {
     }
 
     /// Whether the stroke depends on a seed, and has a median speed.
-    pub const fn is_of_people(self) -> bool {
+    pub(crate) const fn is_of_people(self) -> bool {
         matches!(self, Self::Human | Self::HumanRough)
     }
 

@@ -26,6 +26,13 @@ pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
+/// Mean and standard error of independent values.
+pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let (centre, count) = (mean(values.iter().copied()), values.len() as f64);
+    let variance = values.iter().map(|value| (value - centre).powi(2)).sum::<f64>() / (count - 1.0);
+    (centre, (variance / count).sqrt())
+}
+
 /// 95 % interval of a share of `count` out of `of` (Wilson 1927, doi:10.1080/01621459.1927.10502953).
 pub(crate) fn share_interval(count: usize, of: usize) -> [f64; 2] {
     let (count, of, z) = (count as f64, of as f64, Z_95);

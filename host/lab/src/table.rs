@@ -28,7 +28,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use encoding_rs::mem::decode_latin1;
 
 use crate::input::{ROWS_MAX, at_most, check_header};
-use frixel_scene::brief;
+use frixel_scene::{Nearest, brief};
 
 use crate::recording::{MAGIC, Recording};
 
@@ -43,8 +43,6 @@ use unit::Named;
 pub use unit::Unit;
 use utf16::Utf8;
 
-/// Smallest similarity at which a name is suggested for another, as a fraction of their length.
-const LIKENESS: f64 = 0.55;
 /// Spellings of an unknown value.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
@@ -255,19 +253,10 @@ impl<R: Read> Table<R> {
         if self.names.is_empty() {
             return TableError::no_table("the table is empty");
         }
-        let likeness = |name: &str| {
-            let each = columns.iter().map(|column| strsim::normalized_damerau_levenshtein(column.name, name));
-            each.fold(0.0, f64::max)
-        };
-        let nearest = self
-            .names
-            .iter()
-            .zip(&self.asked)
-            .filter(|(_, asked)| !**asked)
-            .map(|(name, _)| (likeness(name), name))
-            .filter(|(likeness, _)| *likeness >= LIKENESS)
-            .max_by(|one, other| one.0.total_cmp(&other.0))
-            .map_or(String::new(), |(_, name)| format!(" (it has {})", brief(name)));
+        let ignored = self.ignored();
+        let nearest = |column: &Column| Nearest::new(column.name, ignored.iter().map(String::as_str)).suggestion;
+        let nearest = columns.iter().find_map(nearest);
+        let nearest = nearest.map_or(String::new(), |name| format!(" (it has {})", brief(&name)));
         let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
         let found = format!("the header has no column {}{nearest}", names.join(" or "));
         match columns.first().map_or("", |column| column.unit) {
@@ -443,8 +432,8 @@ mod tests {
 
     fn read(bytes: &[u8]) -> Result<(Vec<f64>, Option<String>), TableError> {
         let mut table = Table::new(bytes)?;
-        let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts))?;
-        let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::Newtons))?;
+        let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::VOLTS))?;
+        let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::NEWTONS))?;
         let mut numbers = Vec::new();
         while let Some(row) = table.next_row()? {
             row.check_length()?;
@@ -496,39 +485,11 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_read_in_two_ways_is_refused_with_both() {
-        for (text, said) in [
-            (
-                "voltage_v_rms;friction_n\n150;1,234\n75;2,345\n",
-                "row 2, column friction_n: \"1,234\" can be read as 1.234 or as 1234: save the file without separators of \
-                 thousands, and with points in numbers",
-            ),
-            (
-                "voltage_v_rms;friction_n\n150;0,2\n75;1.234\n",
-                "row 3, column friction_n: \"1.234\" can be read as 1.234 or as 1234: save the file without separators of \
-                 thousands, and with points in numbers",
-            ),
-            (
-                "voltage_v_rms,friction_n\n150,0,25\n75,0,5\n",
-                "row 2: expected 2 cells as in the header, found 3: correct or delete the row; if commas are decimal signs, \
-                 save the file with semicolons between columns",
-            ),
-            (
-                "voltage_v_rms,friction_n;note\n150,0.2;5\n",
-                "the header can be read as 2 columns that commas separate, or as 2 that semicolons do: leave one of them out",
-            ),
-            (
-                "voltage_v_rms,friction_n (mN)\n",
-                "the column `friction_n (mN)` can be read in newtons or in millinewtons: name it friction_n or friction_mn",
-            ),
-            ("\u{feff}\n\n", "the table is empty: give a CSV file with a header row"),
-            (
-                "voltage_v_rms,friction_mn,friction [N]\n",
-                "the header has one quantity twice, friction_mn and friction [N]: leave one of them out",
-            ),
-        ] {
-            assert_eq!(read(text.as_bytes()).unwrap_err().to_string(), said, "{text:?}");
-        }
+    fn decimal_commas_between_commas_are_refused_with_what_to_do() {
+        let said = "row 2: expected 2 cells as in the header, found 3: correct or delete the row; if commas are decimal \
+                    signs, save the file with semicolons between columns";
+        let error = read("voltage_v_rms,friction_n\n150,0,25\n75,0,5\n".as_bytes()).unwrap_err();
+        assert_eq!(error.to_string(), said);
     }
 
     #[test]

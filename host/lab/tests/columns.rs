@@ -122,7 +122,7 @@ fn rows_without_contact_show_the_zero_of_the_sensor() {
     assert!(said.contains("a sensor that was not tared shifts the friction coefficient"), "{said}");
     // A finger that rests with another load each time is no zero.
     let resting = fit_of(untared(|stroke, _| [0.15 + 0.005 * stroke as f64, 0.06])).unwrap();
-    assert_eq!(resting.preparation.sensor_zero, None);
+    assert_eq!(resting.data.preparation.sensor_zero, None);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, Summary, VoltageLaw, data, fit, fit_empirical};
+use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, VoltageLaw, data, fit, fit_empirical};
 use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile, Profile};
 
@@ -48,7 +48,7 @@ fn powers_of_the_voltage_are_recovered_where_the_contact_model_is_refused() {
                 assert!(refused.contains("--law empirical"), "{exponent}: {refused}");
             }
             let fit = empirical(rows).unwrap_or_else(|error| panic!("{exponent}: {error}"));
-            let (_, truth_n) = person.truth(fit.normal_load_n);
+            let (_, truth_n) = person.truth(fit.data.normal_load_n);
             missed_friction += u32::from(!contains(&fit.highest.electric_friction_n, truth_n));
             missed_exponent += u32::from(!contains(&exponent_of(&fit), exponent));
             assert!((fit.highest.electric_friction_n.value / truth_n - 1.0).abs() < 0.03, "{exponent}: {fit:?}");
@@ -76,7 +76,7 @@ fn a_profile_of_either_law_is_read_again() {
 fn the_keys_of_a_fit_are_there_for_every_law() {
     let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
     let rows = Person::example(1).record(&Protocol::default());
-    let summary = serde_json::to_value(Summary::from(&fit(rows.clone(), &settings()).unwrap())).unwrap();
+    let summary = fit(rows.clone(), &settings()).unwrap().json();
     for json in [empirical(rows).unwrap().json(), empirical(bent(1, [37.0, 111.0, 150.0]).1).unwrap().json()] {
         let missing: Vec<_> = keys(&summary).into_iter().filter(|key| json.get(key).is_none()).collect();
         assert!(missing.is_empty(), "{missing:?}");
@@ -90,7 +90,7 @@ fn equal_loads_and_a_small_friction_coefficient_are_no_obstacle() {
     let person = Person { load_share: 0.0, friction_coefficient: 0.1, ..person(2.0, 1) };
     let rows = person.record(&Protocol::default()).into_iter();
     let fit = empirical(rows.map(|row| Row { normal_force_n: person.load_n, ..row }).collect()).unwrap();
-    assert!((fit.normal_load_n - person.load_n).abs() < 1e-12);
+    assert!((fit.data.normal_load_n - person.load_n).abs() < 1e-12);
     assert!((fit.friction_coefficient.value / 0.1 - 1.0).abs() < 0.05, "{fit:?}");
 }
 
@@ -146,7 +146,7 @@ fn a_finger_without_a_power_law_has_the_points_that_were_measured() {
             let VoltageLaw::Points { below, exponent } = &fit.law else { panic!("{fit:?}") };
             assert_eq!((below.len(), *exponent), (2, 2.0));
             for (point, volts) in below.iter().chain([&fit.highest]).zip(at_v_rms) {
-                let truth_n = person.truth(fit.normal_load_n).1 * (volts / 150.0).powi(2);
+                let truth_n = person.truth(fit.data.normal_load_n).1 * (volts / 150.0).powi(2);
                 missed += u32::from(!contains(&point.electric_friction_n, truth_n));
                 assert!((point.electric_friction_n.value / truth_n - 1.0).abs() < 0.1, "{volts}: {point:?}");
             }

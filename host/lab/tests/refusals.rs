@@ -86,7 +86,7 @@ fn a_load_that_is_off_by_more_than_15_percent() {
     };
     let mut rows = example();
     rows.iter_mut().for_each(heavier);
-    let left_out = fit_of(rows.clone()).unwrap().preparation.notes(fit::Division::Column);
+    let left_out = fit_of(rows.clone()).unwrap().data.preparation.notes(fit::Division::Column);
     assert!(left_out[0].contains("stroke 5 left out") && left_out[0].contains("% off the median load"), "{left_out:?}");
     let settings = Settings { without: vec!["5".to_owned()], ..settings() };
     assert_eq!(fit::fit(rows.clone(), &settings).unwrap().strokes.len(), 35);
@@ -106,7 +106,7 @@ fn speeds_and_slip() {
     for factor in [4.0, 0.2] {
         let mut rows = example();
         rows.iter_mut().for_each(speed("4", factor));
-        let left_out = fit_of(rows).unwrap().preparation.notes(fit::Division::Column);
+        let left_out = fit_of(rows).unwrap().data.preparation.notes(fit::Division::Column);
         assert!(
             left_out[0].contains("stroke 4 left out") && left_out[0].contains("outside 20 to 100 mm/s"),
             "{left_out:?}"
@@ -169,9 +169,8 @@ fn friction_is_stated_where_it_was_measured() {
     }
     let fit = fit::fit(rows, &Settings { voltage_v_rms: 90.0, ..settings() }).unwrap();
     assert_eq!(fit.voltage_exponent.verdict, Verdict::None, "below 100 V rms there is no verdict");
-    let summary = fit::Summary::from(&fit);
-    assert_eq!(summary.electric_friction_150_v_n, None);
-    assert!((summary.electric_friction_n / 0.1298 - 1.0).abs() < 0.03);
+    assert!(fit.json()["electric_friction_150_v_n"].is_null());
+    assert!((fit.electric_friction_n.value / 0.1298 - 1.0).abs() < 0.03);
     let settings = Settings { normal_load_n: Some(0.8), ..settings() };
     says(fit::fit(example(), &settings), &["0.8 N would be extrapolated", "leave out --load"]);
 }
@@ -221,14 +220,14 @@ fn without_strokes_rows_are_divided_by_motion_or_in_blocks() {
         row.stroke = None;
     }
     let fit = fit_of(rows.clone()).unwrap();
-    assert_eq!((fit.division, fit.strokes.len()), (fit::Division::Motion, 36));
+    assert_eq!((fit.data.division, fit.strokes.len()), (fit::Division::Motion, 36));
     for row in &mut rows {
         (row.time_s, row.speed_mm_s) = (None, None);
     }
     // Steady sliding only: without time and speed, starts and turns cannot be left out.
     let rows: Vec<Row> = rows.chunks(1600).flat_map(|stroke| &stroke[300..1300]).cloned().collect();
     let fit = fit_of(rows).unwrap();
-    assert_eq!((fit.division, fit.strokes.len()), (fit::Division::Blocks, 24));
+    assert_eq!((fit.data.division, fit.strokes.len()), (fit::Division::Blocks, 24));
     assert!((fit.electric_friction_n.value / 0.1298 - 1.0).abs() < 0.05, "{:?}", fit.electric_friction_n);
     // Friction with a sign, as a sensor gives it for strokes back and forth.
     let mut rows = example();

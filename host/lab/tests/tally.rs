@@ -37,7 +37,7 @@ impl Tally {
     pub(super) fn add(&mut self, result: Result<Fit, FitError>, truth: impl Fn(f64) -> (f64, f64)) {
         match result {
             Ok(fit) => {
-                let (coefficient, electric_n) = truth(fit.normal_load_n);
+                let (coefficient, electric_n) = truth(fit.data.normal_load_n);
                 self.fitted += 1;
                 self.electric += usize::from(contains(&fit.electric_friction_n, electric_n));
                 self.coefficient += usize::from(contains(&fit.friction_coefficient, coefficient));

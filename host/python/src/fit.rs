@@ -1,6 +1,6 @@
 //! Fits of a finger.
 
-use frixel_lab::fit::{self, FitError, Settings, Summary};
+use frixel_lab::fit::{self, FitError, Settings};
 use frixel_lab::table::Reading;
 use frixel_scene::{Experiment, Screen};
 use pyo3::prelude::*;
@@ -51,8 +51,7 @@ pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> 
             return Ok((fit.json().to_string(), with_note(fit.words()), fit.profile(experiment).to_toml()));
         }
         let fit = fit::fit_data(data, &settings, goes_on)?;
-        let summary = serde_json::to_string(&Summary::from(&fit)).unwrap_or_default();
-        Ok((summary, with_note(fit::words(&fit, &screen)), fit::profile(&fit, experiment).to_toml()))
+        Ok((fit.json().to_string(), with_note(fit::words(&fit, &screen)), fit::profile(&fit, experiment).to_toml()))
     })?;
     fitted.map_err(|error: FitError| {
         let in_command = error.to_string();

@@ -49,8 +49,8 @@ mod _frixel {
 
     use frixel_driver::DURATION_MAX_S;
     use frixel_hil_sim::Board;
-    use frixel_lab::calibration::VOLTAGE_MAX_V_RMS;
-    use frixel_lab::score::TrialPlan;
+    use frixel_lab::calibration::{REACH, VOLTAGE_MAX_V_RMS};
+    use frixel_lab::score::{JOBS_MAX, TrialPlan};
     use frixel_lab::simulate::STROKE_MAX_S;
     use frixel_model::Finger;
     use frixel_scene::FingerProfile;
@@ -64,12 +64,14 @@ mod _frixel {
         module.add("SEEDS", TrialPlan::SEEDS)?;
         module.add("STROKE_S", TrialPlan::SECONDS)?;
         module.add("COUNT_MAX", TrialPlan::COUNT_MAX)?;
+        module.add("JOBS_MAX", JOBS_MAX)?;
         module.add("MEDIAN_SPEEDS_MM_PER_S", TrialPlan::MEDIAN_SPEEDS_MM_PER_S.into_inner())?;
         module.add("STROKE_MAX_S", STROKE_MAX_S)?;
         module.add("TRIGGER_MAX_S", DURATION_MAX_S)?;
         module.add("GAIN_MAX", GAIN_MAX)?;
         module.add("TICK_HZ", Board::SIMULATOR.tick_hz)?;
         module.add("VOLTAGE_MAX_V_RMS", VOLTAGE_MAX_V_RMS)?;
+        module.add("REACH", REACH)?;
         module.add("EXAMPLE_FINGER", example_finger().into_py_dict(module.py())?)?;
         module.add("TELEMETRY_MAX_HZ", TELEMETRY_MAX_HZ)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))

@@ -4,7 +4,7 @@ use std::num::NonZero;
 
 use anyhow::{Result, anyhow};
 use clap::Args;
-use frixel_lab::score::TrialPlan;
+use frixel_lab::score::JOBS_MAX;
 use rayon::ThreadPoolBuilder;
 
 use super::argument::whole;
@@ -12,7 +12,7 @@ use super::argument::whole;
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct JobsArgs {
     /// Number of plays to simulate in parallel; results do not depend on it. Default: one per processor.
-    #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=JOBS_MAX))]
     jobs: Option<u64>,
 }
 

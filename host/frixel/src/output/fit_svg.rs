@@ -34,7 +34,7 @@ fn range(values: impl Iterator<Item = f64>) -> core::ops::Range<f64> {
 
 fn over_voltage(fit: &Fit) -> Panel {
     let points: Vec<_> = points(fit).map(|(_, point)| (point.voltage_v_rms, 1e3 * point.measured_n)).collect();
-    let most_v_rms = 1.05 * fit.voltage_range_v_rms.1;
+    let most_v_rms = 1.05 * fit.data.voltage_range_v_rms.1;
     let most_mn = fit.electric_friction_at_n(most_v_rms).map_or(0.0, |newtons| 1e3 * newtons);
     let mut panel = Panel::new(
         "Electric friction",
@@ -43,7 +43,7 @@ fn over_voltage(fit: &Fit) -> Panel {
     );
     let voltages = || (0..=CURVE_POINTS).map(|step| most_v_rms * f64::from(step) / f64::from(CURVE_POINTS));
     let model = voltages().filter_map(|volts| Some((volts, 1e3 * fit.electric_friction_at_n(volts)?)));
-    let highest_v_rms = fit.voltage_range_v_rms.1;
+    let highest_v_rms = fit.data.voltage_range_v_rms.1;
     let square = voltages().map(|volts| {
         (volts, 1e3 * fit.electric_friction_most_n.value * (volts / highest_v_rms) * (volts / highest_v_rms))
     });

@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub use align::{BoardRow, align};
 pub use force_sensor::ForceSensor;
-pub use protocol::{Protocol, VOLTAGE_MAX_V_RMS};
+pub use protocol::{Protocol, REACH, VOLTAGE_MAX_V_RMS};
 pub use simulated_finger::{simulated_finger, simulation_seed};
 
 use crate::fit::{FORCE_MAX_N, Row};
@@ -51,9 +51,9 @@ pub enum CalibrationError {
     Write(csv::Error),
 }
 
-const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
-const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
-const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
+const TIME: Column = Column::new("time_s", "seconds").converted(Unit::SECONDS);
+const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::NEWTONS);
+const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::NEWTONS);
 const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms");
 const SPEED: Column = Column::new("speed_mm_s", "mm/s");
 

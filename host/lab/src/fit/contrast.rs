@@ -218,7 +218,8 @@ fn switched<'s, 'r>(strokes: &'s [(&Stroke, Vec<Run<'r>>)]) -> impl Iterator<Ite
 }
 
 fn means_of(name: &str, segments: &[Segment]) -> StrokeMeans {
-    let natural = natural_friction(segments);
+    let off: Vec<&Segment> = segments.iter().filter(|segment| segment.level.is_none()).collect();
+    let natural = observation(&off, None);
     let mut observations: Vec<Observation> = natural.into_iter().collect();
     let mut present: Vec<usize> = segments.iter().filter_map(|segment| segment.level).collect();
     present.sort_unstable();
@@ -272,10 +273,6 @@ fn weighted<'s>(segments: impl Iterator<Item = (&'s Segment, f64)>) -> f64 {
     let (sum, rows) =
         segments.fold((0.0, 0.0), |(sum, rows), (segment, value)| (sum + segment.rows * value, rows + segment.rows));
     sum / rows
-}
-
-fn natural_friction(segments: &[Segment]) -> Option<Observation> {
-    observation(&segments.iter().filter(|segment| segment.level.is_none()).collect::<Vec<_>>(), None)
 }
 
 /// The mean of segments: their friction, or else the attractions that are given.

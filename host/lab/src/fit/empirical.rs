@@ -8,14 +8,13 @@ use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw}
 
 use super::error::FitError;
 use super::least_squares::Solution;
-use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels, mean_and_error};
+use super::measured_points::{EXPONENTS, LawOfPoints, MeasuredPoint, levels};
 use super::profile::rounded;
-use super::summary::NAMED_V_RMS;
 use super::{
-    Data, Division, FittedData, HeldOut, Point, Preparation, Settings, StrokeResult, results, sensor, verdict,
+    Data, DataSummary, Division, FittedData, HeldOut, Point, Settings, StrokeResult, results, sensor, verdict,
 };
 use crate::bootstrap::{Estimate, GROUP_MIN, Z_999};
-use crate::statistics::{mean, student_quantile};
+use crate::statistics::{mean, mean_and_error, student_quantile};
 
 /// Largest deviation from a power law, as a fraction of electric friction: that of the contact model at the friction of
 /// the example finger.
@@ -30,26 +29,14 @@ pub struct EmpiricalFit {
     pub law: VoltageLaw,
     /// The highest voltage of the data, where the law ends, and its electric friction.
     pub highest: MeasuredPoint,
-    /// Normal load at which this holds, in newtons.
-    pub normal_load_n: f64,
     /// Root mean square error of electric friction in held-out strokes, and its mean, in newtons.
     ///
     /// `None` for means, and if a fit without one stroke does not converge.
     pub held_out_n: Option<(f64, f64)>,
     /// Number of strokes, or of means.
     pub strokes: usize,
-    /// How rows were divided into strokes.
-    pub division: Division,
-    /// Number of rows that were used.
-    pub rows: usize,
-    /// Lowest and highest voltage of the data with the drive on, in volts rms.
-    pub voltage_range_v_rms: (f64, f64),
-    /// Smallest and largest load of the strokes, in newtons.
-    pub load_range_n: (f64, f64),
-    /// As in [`Fit`](super::Fit::bandwidth_hz).
-    pub bandwidth_hz: Option<f64>,
-    /// What was left out and corrected before the fit.
-    pub preparation: Preparation,
+    /// The data, and the load at which this holds.
+    pub data: DataSummary,
 }
 
 /// How electric friction grows up to the highest voltage of the data.
@@ -73,55 +60,32 @@ pub enum VoltageLaw {
 /// strokes of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does
 /// not rise with the voltage as a profile can have it, and with [`FitError::Interrupted`] when `goes_on` breaks.
 pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Result<EmpiricalFit, FitError> {
-    let data = FittedData::of(data, settings, goes_on)?;
-    let friction_coefficient = data.friction_coefficient(|replicate| &replicate.power)?;
-    let strokes = results(&data.strokes, &data.fitted.best.power).ok_or(FitError::NotConverged)?;
-    let (law, highest, held_out_n) = match power_law(&data, &strokes) {
-        Err(FitError::NoPowerLaw(_)) if data.division != Division::Means => {
-            points(&data, &strokes, &friction_coefficient)?
+    let fitted = FittedData::of(data, settings, goes_on)?;
+    let friction_coefficient = fitted.friction_coefficient(|replicate| &replicate.power)?;
+    let strokes = results(&fitted.strokes, &fitted.fitted.best.power).ok_or(FitError::NotConverged)?;
+    let (law, highest, held_out_n) = match power_law(&fitted, &strokes) {
+        Err(FitError::NoPowerLaw(_)) if fitted.data.division != Division::Means => {
+            points(&fitted, &strokes, &friction_coefficient)?
         }
-        fitted => fitted?,
+        law => law?,
     };
-    let FittedData {
-        normal_load_n,
-        division,
-        rows,
-        voltage_range_v_rms,
-        load_range_n,
-        bandwidth_hz,
-        settling_error,
-        preparation,
-        ..
-    } = data;
-    verdict::check_estimates(division, &strokes, &friction_coefficient, &highest.electric_friction_n, normal_load_n)?;
+    let FittedData { data, settling_error, .. } = fitted;
+    verdict::check_estimates(&data, &strokes, &friction_coefficient, &highest.electric_friction_n)?;
     sensor::check_settling_error(settling_error)?;
-    let strokes = strokes.len();
-    Ok(EmpiricalFit {
-        friction_coefficient,
-        law,
-        highest,
-        normal_load_n,
-        held_out_n,
-        strokes,
-        division,
-        rows,
-        voltage_range_v_rms,
-        load_range_n,
-        bandwidth_hz,
-        preparation,
-    })
+    Ok(EmpiricalFit { friction_coefficient, law, highest, held_out_n, strokes: strokes.len(), data })
 }
 
 type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
 
 /// The power law of the data. Fails if their means at a voltage deviate from it.
-fn power_law(data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitError> {
+fn power_law(fitted_data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitError> {
+    let FittedData { fitted, data, .. } = fitted_data;
     let voltage_v_rms = data.voltage_range_v_rms.1;
     let of = |solution: &Solution| {
         let attraction_n = solution.attraction.attraction_n(voltage_v_rms, data.normal_load_n)?;
         Some(solution.friction_coefficient * attraction_n)
     };
-    let exponent = data.fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?;
+    let exponent = fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?;
     if !EXPONENTS.contains(&exponent.value) {
         return Err(FitError::Refused(format!(
             "electric friction grows as voltage to the power {:.2}, and a profile takes 0.5 to 12: check for a voltage \
@@ -129,19 +93,19 @@ fn power_law(data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitErro
             exponent.value
         )));
     }
-    let Estimate { value, low, high } = data.fitted.estimate(|replicate| of(&replicate.power))?;
+    let Estimate { value, low, high } = fitted.estimate(|replicate| of(&replicate.power))?;
     // What the strokes of the highest voltage say without the law.
     let beside_n = value + check_law(strokes)?;
     let electric_friction_n = Estimate { value, low: low.min(beside_n), high: high.max(beside_n) };
-    let held_out_n = data.held_out.map(|held_out| (held_out.power_law_error_n, held_out.mean_n));
+    let held_out_n = fitted_data.held_out.map(|held_out| (held_out.power_law_error_n, held_out.mean_n));
     Ok((VoltageLaw::Power { exponent }, MeasuredPoint { voltage_v_rms, electric_friction_n }, held_out_n))
 }
 
 /// The law of the means at each voltage.
-fn points(data: &FittedData, strokes: &[StrokeResult], friction_coefficient: &Estimate) -> Result<Law, FitError> {
+fn points(fitted: &FittedData, strokes: &[StrokeResult], friction_coefficient: &Estimate) -> Result<Law, FitError> {
     let Estimate { value, low, high } = *friction_coefficient;
-    let attraction = &data.fitted.best.power.attraction;
-    let law = LawOfPoints::of(strokes, attraction, data.normal_load_n, (high - low) / (2.0 * value))?;
+    let attraction = &fitted.fitted.best.power.attraction;
+    let law = LawOfPoints::of(strokes, attraction, fitted.data.normal_load_n, (high - low) / (2.0 * value))?;
     let LawOfPoints { points: mut below, exponent, held_out_error_n } = law;
     let highest = below.pop().ok_or(FitError::NotConverged)?;
     let measured_n = strokes.iter().flat_map(|stroke| &stroke.points).map(|point| point.measured_n);
@@ -186,7 +150,7 @@ impl EmpiricalFit {
     }
 
     /// All points, rising.
-    fn points(&self) -> impl Iterator<Item = &MeasuredPoint> {
+    pub(super) fn points(&self) -> impl Iterator<Item = &MeasuredPoint> {
         self.below().0.iter().chain([&self.highest])
     }
 
@@ -199,7 +163,7 @@ impl EmpiricalFit {
         };
         FingerProfile {
             friction_coefficient: rounded(self.friction_coefficient.value),
-            normal_load_n: rounded(self.normal_load_n),
+            normal_load_n: rounded(self.data.normal_load_n),
             radius_mm: 0.0,
             elasticity: Elasticity::Empirical(MeasuredLaw {
                 exponent: rounded(self.below().1),
@@ -230,7 +194,7 @@ impl EmpiricalFit {
         line("friction coefficient", interval(self.friction_coefficient, 1.0, 3));
         for MeasuredPoint { voltage_v_rms, electric_friction_n } in self.points() {
             let electric = interval(*electric_friction_n, 1e3, 1).replacen(" (", " mN (", 1);
-            let load_n = self.normal_load_n;
+            let load_n = self.data.normal_load_n;
             line("electric friction", format!("{electric} at {voltage_v_rms:.0} V rms under {load_n:.2} N"));
         }
         if let VoltageLaw::Power { exponent } = self.law {
@@ -239,7 +203,7 @@ impl EmpiricalFit {
         if let Some((error_n, mean_n)) = self.held_out_n {
             line("strokes left out", HeldOut::words(error_n, mean_n));
         }
-        let what = if self.division == Division::Means { "means with their errors" } else { "strokes" };
+        let what = if self.data.division == Division::Means { "means with their errors" } else { "strokes" };
         line("data", format!("{} {what}", self.strokes));
         let below = match self.law {
             VoltageLaw::Power { .. } => "nobody measured that friction goes on by the same power".to_owned(),
@@ -252,56 +216,9 @@ impl EmpiricalFit {
                 .to_owned(),
             format!("below the lowest voltage of the data, {below}"),
         ];
-        for note in notes.into_iter().chain(self.preparation.notes(self.division)) {
+        for note in notes.into_iter().chain(self.data.preparation.notes(self.data.division)) {
             let _ = writeln!(text, "  note: {note}");
         }
         text
-    }
-
-    /// The fit for programs: the keys of a [`Summary`](super::Summary), of which a law without a model leaves some
-    /// `null`, and those of the law.
-    pub fn json(&self) -> serde_json::Value {
-        let interval = |estimate: Estimate| [estimate.low, estimate.high];
-        let exponent = match self.law {
-            VoltageLaw::Power { exponent } => Some(exponent),
-            VoltageLaw::Points { .. } => None,
-        };
-        let MeasuredPoint { voltage_v_rms, electric_friction_n } = self.highest;
-        let named = Some(electric_friction_n).filter(|_| (voltage_v_rms - NAMED_V_RMS).abs() < 1e-6);
-        let points: Vec<_> = self.points().map(|one| [one.voltage_v_rms, one.electric_friction_n.value]).collect();
-        let intervals_n: Vec<_> = self.points().map(|point| interval(point.electric_friction_n)).collect();
-        serde_json::json!({
-            "law": "empirical",
-            "friction_coefficient": self.friction_coefficient.value,
-            "friction_coefficient_interval": interval(self.friction_coefficient),
-            "electric_friction_150_v_n": named.map(|estimate| estimate.value),
-            "electric_friction_150_v_interval_n": named.map(interval),
-            "stated_voltage_v_rms": voltage_v_rms,
-            "normal_load_n": self.normal_load_n,
-            "electric_friction_n": electric_friction_n.value,
-            "electric_friction_interval_n": interval(electric_friction_n),
-            "voltage_exponent": exponent.map(|exponent| exponent.value),
-            "voltage_exponent_interval": exponent.map(interval),
-            "voltage_exponent_of_model": null,
-            "voltage_verdict": "none",
-            "load_exponent": null,
-            "load_exponent_interval": null,
-            "load_exponent_of_model": null,
-            "load_verdict": "none",
-            "coupling_sqrt_n_per_v2": null,
-            "coupling_interval_sqrt_n_per_v2": null,
-            "skin_gap_um": null,
-            "voltage_range_v_rms": self.voltage_range_v_rms,
-            "normal_load_range_n": self.load_range_n,
-            "strokes": self.strokes,
-            "rows": self.rows,
-            "division": self.division.key(),
-            "bandwidth_hz": self.bandwidth_hz,
-            "held_out_error_n": self.held_out_n.map(|(error_n, _)| error_n),
-            "points": points,
-            "intervals_n": intervals_n,
-            "strokes_left_out": self.preparation.left_out_names(),
-            "sensor_zero_n": self.preparation.sensor_zero_n(),
-        })
     }
 }

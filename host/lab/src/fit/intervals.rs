@@ -5,7 +5,7 @@ use super::error::FitError;
 use super::least_squares::{Observation, Solution};
 use super::search::{Replicate, Search};
 use crate::bootstrap::{Draws, Estimate, Z_95};
-use crate::statistics::{mean, student_quantile};
+use crate::statistics::{mean, mean_and_error, student_quantile};
 
 /// Number of draws of the bootstrap.
 pub(super) const DRAWS: usize = 499;
@@ -85,10 +85,8 @@ pub(super) fn wandering(strokes: &[StrokeMeans], estimate: Estimate) -> Estimate
     let coefficients: Vec<f64> = strokes.iter().filter_map(|stroke| stroke.natural_coefficient).collect();
     let parts: Vec<f64> =
         coefficients.chunks(coefficients.len().div_ceil(SIXTHS)).map(|part| mean(part.iter().copied())).collect();
-    let count = parts.len() as f64;
-    let centre = mean(parts.iter().copied());
-    let variance = parts.iter().map(|part| (part - centre) * (part - centre)).sum::<f64>() / (count - 1.0);
-    let room = student_quantile(Z_95, count - 1.0) * (variance / count).sqrt();
+    let (_, error) = mean_and_error(&parts);
+    let room = student_quantile(Z_95, parts.len() as f64 - 1.0) * error;
     Estimate {
         low: estimate.low.min(estimate.value - room),
         high: estimate.high.max(estimate.value + room),

@@ -8,9 +8,9 @@ use core::f64::consts::PI;
 use frixel_model::{Contact, Finger, ParameterError, VACUUM_PERMITTIVITY_F_PER_M};
 
 /// Radius of curvature of every fitted finger, in metres: a convention, which friction data cannot contradict.
-pub const CONVENTIONAL_RADIUS_M: f64 = 8e-3;
+pub(super) const CONVENTIONAL_RADIUS_M: f64 = 8e-3;
 /// Winkler-Fuss stiffness of every fitted finger, in Pa/m: a convention, which friction data cannot contradict.
-pub const CONVENTIONAL_STIFFNESS_PA_PER_M: f64 = 1.8e7;
+pub(super) const CONVENTIONAL_STIFFNESS_PA_PER_M: f64 = 1.8e7;
 
 /// Voltage at which the power law states its attraction, in volts rms.
 pub(super) const REFERENCE_V_RMS: f64 = 150.0;

@@ -24,13 +24,13 @@ use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
 use super::search::{Search, start};
 use super::table::{FRICTION, LOAD, VOLTAGE, check_voltage};
-use super::{FittedData, Preparation, Settings, rules};
+use super::{DataSummary, FittedData, Preparation, Settings, rules};
 use crate::bootstrap::Draws;
 use crate::statistics::median;
 use crate::table::{Column, Place, Reading, Row, Table, Unit};
 
-const STANDARD_ERROR: Column = Column::new("friction_se_n", "newtons").converted(Unit::Newtons);
-const STANDARD_DEVIATION: Column = Column::new("friction_sd_n", "newtons").converted(Unit::Newtons);
+const STANDARD_ERROR: Column = Column::new("friction_se_n", "newtons").converted(Unit::NEWTONS);
+const STANDARD_DEVIATION: Column = Column::new("friction_sd_n", "newtons").converted(Unit::NEWTONS);
 const NUMBER: Column = Column::new("n", "");
 
 /// Least number of means: friction coefficient and coupling are fitted, and something must be left to judge them.
@@ -157,10 +157,7 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
     let replicates = goes_on.filter_map(|_| search.run(&drawn(), &best.contact)).collect();
     let fitted = Fitted::of_draws(best, replicates, Draws::of_errors())?;
     check_scatter(&observations, &freedoms, &fitted)?;
-    Ok(FittedData {
-        fitted,
-        strokes,
-        observations,
+    let data = DataSummary {
         normal_load_n,
         voltage_range_v_rms,
         load_range_n,
@@ -169,10 +166,9 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
         has_time: false,
         has_speed: false,
         bandwidth_hz: None,
-        settling_error: 0.0,
-        held_out: None,
         preparation: Preparation::default(),
-    })
+    };
+    Ok(FittedData { fitted, strokes, observations, data, settling_error: 0.0, held_out: None })
 }
 
 /// Checks that means can be fitted. Returns the lowest and the highest voltage.

@@ -6,7 +6,7 @@ use super::law::Attraction;
 use super::search::no_electric_friction;
 use super::{Point, StrokeResult, rules};
 use crate::bootstrap::{Estimate, Z_95};
-use crate::statistics::{mean, student_quantile};
+use crate::statistics::{mean, mean_and_error, student_quantile};
 
 /// Most points of a profile (`docs/design/scenes.md`, "Empirical fingers").
 const POINTS_MAX: usize = 16;
@@ -47,13 +47,6 @@ pub(super) fn levels(strokes: &[StrokeResult]) -> Vec<Vec<Point>> {
         }
     }
     levels
-}
-
-/// Mean and standard error of independent values.
-pub(super) fn mean_and_error(values: &[f64]) -> (f64, f64) {
-    let (centre, count) = (mean(values.iter().copied()), values.len() as f64);
-    let variance = values.iter().map(|value| (value - centre).powi(2)).sum::<f64>() / (count - 1.0);
-    (centre, (variance / count).sqrt())
 }
 
 impl LawOfPoints {

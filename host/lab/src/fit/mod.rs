@@ -23,6 +23,7 @@
 
 mod contrast;
 mod copies;
+mod data_summary;
 mod empirical;
 mod error;
 mod faults;
@@ -48,14 +49,14 @@ use frixel_play::{GoesOn, TO_THE_END};
 
 pub use crate::bootstrap::Estimate;
 use contrast::{Edges, Levels, Phases, StrokeMeans};
+pub use data_summary::DataSummary;
 pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
 pub use error::FitError;
 use faults::Faults;
 pub use faults::{Fault, FaultyStroke};
 pub use held_out::HeldOut;
 use intervals::{Fitted, wandering};
-use law::{Attraction, Coupling};
-pub use law::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M};
+use law::{Attraction, CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M, Coupling};
 use least_squares::{Observation, Solution, residuals_n};
 pub use means::MeanRow;
 pub use measured_points::MeasuredPoint;
@@ -65,7 +66,7 @@ pub use recording::Division;
 use recording::Recording;
 pub(crate) use rules::FORCE_MAX_N;
 use search::{Replicate, Search, attraction_of, coupling_of, start};
-pub use summary::{Summary, words};
+pub use summary::words;
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
 pub use zero::SensorZero;
@@ -95,8 +96,6 @@ pub struct Fit {
     pub coupling_sqrt_n_per_v2: Estimate,
     /// Voltage at which electric friction is stated, in volts rms.
     pub stated_voltage_v_rms: f64,
-    /// Normal load at which it is stated, in newtons.
-    pub normal_load_n: f64,
     /// Electric friction at the stated voltage, in newtons.
     pub electric_friction_n: Estimate,
     /// Electric friction at the highest voltage of the data, in newtons.
@@ -109,26 +108,10 @@ pub struct Fit {
     pub gap_m: f64,
     /// The part of the gap that is not coating, in metres.
     pub skin_gap_m: f64,
-    /// Lowest and highest voltage of the data with the drive on, in volts rms.
-    pub voltage_range_v_rms: (f64, f64),
-    /// Smallest and largest load of the strokes, in newtons.
-    pub load_range_n: (f64, f64),
-    /// Number of rows that were used.
-    pub rows: usize,
-    /// How rows were divided into strokes.
-    pub division: Division,
-    /// Whether the data have times, so that starts and turns were dropped.
-    pub has_time: bool,
-    /// Whether the data have speeds.
-    pub has_speed: bool,
-    /// Bandwidth with which friction follows a switch of the drive, in Hz.
-    ///
-    /// It is that of the force sensor, and of the finger; `None` if the data are inconclusive.
-    pub bandwidth_hz: Option<f64>,
+    /// The data, and the load at which friction is stated.
+    pub data: DataSummary,
     /// Errors in held-out strokes; `None` for means, and if a fit without one stroke does not converge.
     pub held_out: Option<HeldOut>,
-    /// What was left out and corrected before the fit.
-    pub preparation: Preparation,
     /// Measured and fitted values of each stroke.
     pub strokes: Vec<StrokeResult>,
 }
@@ -161,7 +144,7 @@ impl Fit {
     /// The fitted electric friction at a voltage under the stated load, in newtons; `None` out of the model's range.
     pub fn electric_friction_at_n(&self, voltage_v_rms: f64) -> Option<f64> {
         let attraction = Attraction::Contact(Coupling(self.coupling_sqrt_n_per_v2.value));
-        Some(self.friction_coefficient.value * attraction.attraction_n(voltage_v_rms, self.normal_load_n)?)
+        Some(self.friction_coefficient.value * attraction.attraction_n(voltage_v_rms, self.data.normal_load_n)?)
     }
 }
 
@@ -170,19 +153,10 @@ struct FittedData {
     fitted: Fitted,
     strokes: Vec<StrokeMeans>,
     observations: Vec<Observation>,
-    /// Normal load at which friction is stated, in newtons.
-    normal_load_n: f64,
-    voltage_range_v_rms: (f64, f64),
-    load_range_n: (f64, f64),
-    rows: usize,
-    division: Division,
-    has_time: bool,
-    has_speed: bool,
-    bandwidth_hz: Option<f64>,
+    data: DataSummary,
     /// Widest half-interval in [`sensor::check_settled`], as a part of electric friction. Zero for means.
     settling_error: f64,
     held_out: Option<HeldOut>,
-    preparation: Preparation,
 }
 
 impl FittedData {
@@ -206,8 +180,9 @@ impl FittedData {
             // Those that were left out are missing.
             faults.refuse()?;
         }
-        let preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time };
-        Ok(Self { preparation, ..fitted? })
+        let mut fitted = fitted?;
+        fitted.data.preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time };
+        Ok(fitted)
     }
 
     /// Fits the laws to the strokes without faults; the others are added to `faults`.
@@ -245,9 +220,7 @@ impl FittedData {
         faults.check()?;
         let held_out = HeldOut::of(&search, &strokes, &best);
         let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
-        Ok(Self {
-            fitted,
-            observations,
+        let data = DataSummary {
             normal_load_n,
             voltage_range_v_rms,
             load_range_n,
@@ -256,17 +229,15 @@ impl FittedData {
             has_time: recording.has_time,
             has_speed: recording.has_speed,
             bandwidth_hz,
-            settling_error,
-            held_out,
             preparation: Preparation::default(),
-            strokes,
-        })
+        };
+        Ok(Self { fitted, strokes, observations, data, settling_error, held_out })
     }
 
     /// Friction over load with the drive off, by one of the laws.
     fn friction_coefficient(&self, law: impl Fn(&Replicate) -> &Solution) -> Result<Estimate, FitError> {
         let estimate = self.fitted.estimate(|replicate| Some(law(replicate).friction_coefficient))?;
-        Ok(if self.division == Division::Means { estimate } else { wandering(&self.strokes, estimate) })
+        Ok(if self.data.division == Division::Means { estimate } else { wandering(&self.strokes, estimate) })
     }
 }
 
@@ -282,40 +253,31 @@ pub fn fit(rows: Vec<Row>, settings: &Settings) -> Result<Fit, FitError> {
 }
 
 /// The fit of the contact model. Fails if the data contradict it.
-fn judged(data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
-    let FittedData { fitted, normal_load_n, voltage_range_v_rms, .. } = data;
-    let (normal_load_n, voltage_range_v_rms) = (*normal_load_n, *voltage_range_v_rms);
-    rules::check_stated_voltage(settings, voltage_range_v_rms)?;
-    let judge = verdict::Judge { fitted, observations: &data.observations };
-    let voltage_exponent = judge.voltage(normal_load_n, voltage_range_v_rms.1)?;
+fn judged(fitted_data: &FittedData, settings: &Settings) -> Result<Fit, FitError> {
+    let FittedData { fitted, observations, data, .. } = fitted_data;
+    let DataSummary { normal_load_n, voltage_range_v_rms: (_, voltage_max_v_rms), .. } = *data;
+    rules::check_stated_voltage(settings, voltage_max_v_rms)?;
+    let judge = verdict::Judge { fitted, observations };
+    let voltage_exponent = judge.voltage(normal_load_n, voltage_max_v_rms)?;
     let load_exponent = judge.load(normal_load_n)?;
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
     let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
-        friction_coefficient: data.friction_coefficient(|replicate| &replicate.contact)?,
+        friction_coefficient: fitted_data.friction_coefficient(|replicate| &replicate.contact)?,
         coupling_sqrt_n_per_v2: coupling,
         stated_voltage_v_rms: settings.voltage_v_rms,
-        normal_load_n,
         electric_friction_n: fitted.electric_friction_n(settings.voltage_v_rms, normal_load_n)?,
-        electric_friction_most_n: fitted.electric_friction_n(voltage_range_v_rms.1, normal_load_n)?,
+        electric_friction_most_n: fitted.electric_friction_n(voltage_max_v_rms, normal_load_n)?,
         voltage_exponent,
         load_exponent,
         gap_m,
         skin_gap_m: gap_m - settings.coating_gap_m,
-        voltage_range_v_rms,
-        load_range_n: data.load_range_n,
-        rows: data.rows,
-        division: data.division,
-        has_time: data.has_time,
-        has_speed: data.has_speed,
-        bandwidth_hz: data.bandwidth_hz,
-        held_out: data.held_out,
-        preparation: data.preparation.clone(),
-        strokes: results(&data.strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
+        data: data.clone(),
+        held_out: fitted_data.held_out,
+        strokes: results(&fitted_data.strokes, &fitted.best.contact).ok_or(FitError::NotConverged)?,
     };
-    let Fit { friction_coefficient, electric_friction_n, .. } = &fit;
-    verdict::check_estimates(fit.division, &fit.strokes, friction_coefficient, electric_friction_n, normal_load_n)?;
-    sensor::check_settling_error(data.settling_error)?;
+    verdict::check_estimates(data, &fit.strokes, &fit.friction_coefficient, &fit.electric_friction_n)?;
+    sensor::check_settling_error(fitted_data.settling_error)?;
     verdict::check_gap(&fit, settings)?;
     Ok(fit)
 }

@@ -16,16 +16,6 @@ pub struct Preparation {
 }
 
 impl Preparation {
-    /// Names of the strokes that were left out.
-    pub fn left_out_names(&self) -> Vec<&str> {
-        self.left_out.iter().map(|faulty| &*faulty.stroke).collect()
-    }
-
-    /// Reading of the force sensor without contact: normal force and friction, in newtons.
-    pub fn sensor_zero_n(&self) -> Option<[f64; 2]> {
-        self.sensor_zero.map(|zero| [zero.normal_force_n, zero.friction_n])
-    }
-
     /// A note for each of them; none for means.
     pub fn notes(&self, division: Division) -> Vec<String> {
         if division == Division::Means {

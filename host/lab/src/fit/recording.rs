@@ -1,6 +1,7 @@
 //! Divides rows into strokes, and drops what is no steady sliding.
 
 use frixel_scene::brief;
+use serde::Serialize;
 
 use super::copies;
 use super::error::FitError;
@@ -31,7 +32,8 @@ const BLOCK_ROWS: usize = 5;
 const TIMELESS_PART: f64 = 0.1;
 
 /// How the rows were divided into strokes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Division {
     /// By the column `stroke`.
     Column,

@@ -258,8 +258,8 @@ fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
 }
 
 /// Checks that friction is stated at a voltage that was measured.
-pub(super) fn check_stated_voltage(settings: &Settings, voltages: (f64, f64)) -> Result<(), FitError> {
-    let (stated, max) = (settings.voltage_v_rms, voltages.1);
+pub(super) fn check_stated_voltage(settings: &Settings, max: f64) -> Result<(), FitError> {
+    let stated = settings.voltage_v_rms;
     if stated <= EXTRAPOLATION * max {
         return Ok(());
     }

@@ -5,135 +5,164 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::sensor::BANDWIDTH_TIMES_RISE;
-use super::{Division, Estimate, Exponent, Fit, HeldOut, Verdict};
+use super::{
+    DataSummary, Division, EmpiricalFit, Estimate, Exponent, Fit, HeldOut, MeasuredPoint, Preparation, Verdict,
+    VoltageLaw,
+};
 
 /// Voltage of the keys that name it, in volts rms.
-pub(super) const NAMED_V_RMS: f64 = 150.0;
+const NAMED_V_RMS: f64 = 150.0;
 
-/// A fit; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are of 95 %.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+/// A fit by either law; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are of
+/// 95 %.
+#[derive(Default, Serialize)]
+struct Summary<'f> {
+    /// `empirical`; absent for the contact model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<&'static str>,
     /// Friction over load with the drive off.
-    pub friction_coefficient: f64,
+    friction_coefficient: f64,
     /// Its interval.
-    pub friction_coefficient_interval: [f64; 2],
+    friction_coefficient_interval: [f64; 2],
     /// Electric friction at 150 V rms under the stated load, N; `null` if friction is stated at another voltage.
-    pub electric_friction_150_v_n: Option<f64>,
+    electric_friction_150_v_n: Option<f64>,
     /// Its interval.
-    pub electric_friction_150_v_interval_n: Option<[f64; 2]>,
+    electric_friction_150_v_interval_n: Option<[f64; 2]>,
     /// Exponent of the voltage in a power law that is fitted to the same data.
-    pub voltage_exponent: f64,
+    voltage_exponent: Option<f64>,
     /// Its interval.
-    pub voltage_exponent_interval: [f64; 2],
+    voltage_exponent_interval: Option<[f64; 2]>,
     /// The model's exponent for these data.
-    pub voltage_exponent_of_model: f64,
+    voltage_exponent_of_model: Option<f64>,
     /// `kept`, `doubted` or `none`: what the exponent of the voltage says about the model.
-    pub voltage_verdict: &'static str,
+    voltage_verdict: Verdict,
     /// Exponent of the load; `null` if the loads are too similar.
-    pub load_exponent: Option<f64>,
+    load_exponent: Option<f64>,
     /// Its interval.
-    pub load_exponent_interval: Option<[f64; 2]>,
+    load_exponent_interval: Option<[f64; 2]>,
     /// The model's exponent for these data.
-    pub load_exponent_of_model: Option<f64>,
+    load_exponent_of_model: Option<f64>,
     /// `kept`, `doubted` or `none`: what the exponent of the load says about the model.
-    pub load_verdict: &'static str,
+    load_verdict: Verdict,
     /// Voltage at which electric friction is stated, V rms.
-    pub stated_voltage_v_rms: f64,
+    stated_voltage_v_rms: f64,
     /// Load at which electric friction is stated, N.
-    pub normal_load_n: f64,
+    normal_load_n: f64,
     /// Electric friction at the stated voltage, N.
-    pub electric_friction_n: f64,
+    electric_friction_n: f64,
     /// Its interval.
-    pub electric_friction_interval_n: [f64; 2],
+    electric_friction_interval_n: [f64; 2],
     /// The one number about electrode, skin and gap that friction data give: `eps0/(2 g^2) sqrt(pi R/k)`, sqrt(N)/V^2.
-    pub coupling_sqrt_n_per_v2: f64,
+    coupling_sqrt_n_per_v2: Option<f64>,
     /// Its interval.
-    pub coupling_interval_sqrt_n_per_v2: [f64; 2],
+    coupling_interval_sqrt_n_per_v2: Option<[f64; 2]>,
     /// Skin gap of a finger of conventional radius and stiffness on this screen, um.
-    pub skin_gap_um: f64,
+    skin_gap_um: Option<f64>,
     /// Lowest and highest voltage of the data, V rms.
-    pub voltage_range_v_rms: [f64; 2],
+    voltage_range_v_rms: (f64, f64),
     /// Smallest and largest load of the strokes, N.
-    pub normal_load_range_n: [f64; 2],
+    normal_load_range_n: (f64, f64),
     /// Number of strokes.
-    pub strokes: usize,
+    strokes: usize,
     /// Number of rows that were used.
-    pub rows: usize,
+    rows: usize,
     /// How rows were divided into strokes: `column`, `motion` or `blocks`; `means` if the rows are means.
-    pub division: &'static str,
+    division: Option<Division>,
     /// Bandwidth with which friction follows a switch of the drive, Hz.
     ///
     /// It is that of force sensor and finger together; `null` if the data are inconclusive.
-    pub bandwidth_hz: Option<f64>,
+    bandwidth_hz: Option<f64>,
     /// Names of the odd strokes that were left out.
-    pub strokes_left_out: Vec<String>,
+    strokes_left_out: Vec<&'f str>,
     /// Normal force and friction that the force sensor read without contact, which were subtracted, N; `null` where no
     /// rows are without contact.
-    pub sensor_zero_n: Option<[f64; 2]>,
+    sensor_zero_n: Option<[f64; 2]>,
     /// Root mean square error of electric friction in held-out strokes, N; `null` for means.
-    pub held_out_error_n: Option<f64>,
+    held_out_error_n: Option<f64>,
+    /// The points of an empirical law: voltage, V rms, and electric friction, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<[f64; 2]>>,
+    /// The intervals of their electric friction, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intervals_n: Option<Vec<[f64; 2]>>,
 }
 
-impl From<&Fit> for Summary {
-    fn from(fit: &Fit) -> Self {
-        let is_named = (fit.stated_voltage_v_rms - NAMED_V_RMS).abs() < 1e-6;
-        let electric = fit.electric_friction_n;
-        let load = Some(fit.load_exponent).filter(|exponent| exponent.verdict != Verdict::None);
+impl<'f> Summary<'f> {
+    /// What a fit says without the contact model: `stated` is a voltage, and electric friction there.
+    fn of(data: &'f DataSummary, strokes: usize, coefficient: Estimate, stated: (f64, Estimate)) -> Self {
+        let (stated_voltage_v_rms, electric) = stated;
+        let named = Some(electric).filter(|_| (stated_voltage_v_rms - NAMED_V_RMS).abs() < 1e-6);
+        let Preparation { left_out, sensor_zero, .. } = &data.preparation;
         Self {
-            friction_coefficient: fit.friction_coefficient.value,
-            friction_coefficient_interval: interval(&fit.friction_coefficient),
-            electric_friction_150_v_n: is_named.then_some(electric.value),
-            electric_friction_150_v_interval_n: is_named.then(|| interval(&electric)),
-            voltage_exponent: fit.voltage_exponent.measured.value,
-            voltage_exponent_interval: interval(&fit.voltage_exponent.measured),
-            voltage_exponent_of_model: fit.voltage_exponent.model,
-            voltage_verdict: verdict(&fit.voltage_exponent),
-            load_exponent: load.map(|exponent| exponent.measured.value),
-            load_exponent_interval: load.map(|exponent| interval(&exponent.measured)),
-            load_exponent_of_model: load.map(|exponent| exponent.model),
-            load_verdict: verdict(&fit.load_exponent),
-            stated_voltage_v_rms: fit.stated_voltage_v_rms,
-            normal_load_n: fit.normal_load_n,
+            friction_coefficient: coefficient.value,
+            friction_coefficient_interval: interval(coefficient),
+            electric_friction_150_v_n: named.map(|electric| electric.value),
+            electric_friction_150_v_interval_n: named.map(interval),
+            stated_voltage_v_rms,
+            normal_load_n: data.normal_load_n,
             electric_friction_n: electric.value,
-            electric_friction_interval_n: interval(&electric),
-            coupling_sqrt_n_per_v2: fit.coupling_sqrt_n_per_v2.value,
-            coupling_interval_sqrt_n_per_v2: interval(&fit.coupling_sqrt_n_per_v2),
-            skin_gap_um: 1e6 * fit.skin_gap_m,
-            voltage_range_v_rms: [fit.voltage_range_v_rms.0, fit.voltage_range_v_rms.1],
-            normal_load_range_n: [fit.load_range_n.0, fit.load_range_n.1],
-            strokes: fit.strokes.len(),
-            rows: fit.rows,
-            division: fit.division.key(),
-            bandwidth_hz: fit.bandwidth_hz,
-            strokes_left_out: fit.preparation.left_out_names().into_iter().map(str::to_owned).collect(),
-            sensor_zero_n: fit.preparation.sensor_zero_n(),
-            held_out_error_n: fit.held_out.map(|held_out| held_out.contact_error_n),
+            electric_friction_interval_n: interval(electric),
+            voltage_range_v_rms: data.voltage_range_v_rms,
+            normal_load_range_n: data.load_range_n,
+            strokes,
+            rows: data.rows,
+            division: Some(data.division),
+            bandwidth_hz: data.bandwidth_hz,
+            strokes_left_out: left_out.iter().map(|faulty| &*faulty.stroke).collect(),
+            sensor_zero_n: sensor_zero.map(|zero| [zero.normal_force_n, zero.friction_n]),
+            ..Self::default()
         }
     }
 }
 
-fn interval(estimate: &Estimate) -> [f64; 2] {
+impl Fit {
+    /// The fit for programs: the keys that docs/design/outputs.md lists.
+    pub fn json(&self) -> serde_json::Value {
+        let Exponent { measured, model, verdict } = self.voltage_exponent;
+        let load = Some(self.load_exponent).filter(|exponent| exponent.verdict != Verdict::None);
+        let stated = (self.stated_voltage_v_rms, self.electric_friction_n);
+        serde_json::json!(Summary {
+            voltage_exponent: Some(measured.value),
+            voltage_exponent_interval: Some(interval(measured)),
+            voltage_exponent_of_model: Some(model),
+            voltage_verdict: verdict,
+            load_exponent: load.map(|exponent| exponent.measured.value),
+            load_exponent_interval: load.map(|exponent| interval(exponent.measured)),
+            load_exponent_of_model: load.map(|exponent| exponent.model),
+            load_verdict: self.load_exponent.verdict,
+            coupling_sqrt_n_per_v2: Some(self.coupling_sqrt_n_per_v2.value),
+            coupling_interval_sqrt_n_per_v2: Some(interval(self.coupling_sqrt_n_per_v2)),
+            skin_gap_um: Some(1e6 * self.skin_gap_m),
+            held_out_error_n: self.held_out.map(|held_out| held_out.contact_error_n),
+            ..Summary::of(&self.data, self.strokes.len(), self.friction_coefficient, stated)
+        })
+    }
+}
+
+impl EmpiricalFit {
+    /// The fit for programs: the keys of a [`Fit`], of which a law without a model leaves some `null`, and
+    /// those of the law.
+    pub fn json(&self) -> serde_json::Value {
+        let exponent = match self.law {
+            VoltageLaw::Power { exponent } => Some(exponent),
+            VoltageLaw::Points { .. } => None,
+        };
+        let MeasuredPoint { voltage_v_rms, electric_friction_n } = self.highest;
+        let points = self.points().map(|one| [one.voltage_v_rms, one.electric_friction_n.value]).collect();
+        serde_json::json!(Summary {
+            law: Some("empirical"),
+            voltage_exponent: exponent.map(|exponent| exponent.value),
+            voltage_exponent_interval: exponent.map(interval),
+            held_out_error_n: self.held_out_n.map(|(error_n, _)| error_n),
+            points: Some(points),
+            intervals_n: Some(self.points().map(|point| interval(point.electric_friction_n)).collect()),
+            ..Summary::of(&self.data, self.strokes, self.friction_coefficient, (voltage_v_rms, electric_friction_n))
+        })
+    }
+}
+
+fn interval(estimate: Estimate) -> [f64; 2] {
     [estimate.low, estimate.high]
-}
-
-impl Division {
-    /// The word of `--json`.
-    pub(super) fn key(self) -> &'static str {
-        match self {
-            Self::Column => "column",
-            Self::Motion => "motion",
-            Self::Blocks => "blocks",
-            Self::Means => "means",
-        }
-    }
-}
-
-fn verdict(exponent: &Exponent) -> &'static str {
-    match exponent.verdict {
-        Verdict::None => "none",
-        Verdict::Kept => "kept",
-        Verdict::Doubted => "doubted",
-    }
 }
 
 /// The fit in words, a line each: the results, what they say about the model, and what the data cannot tell.
@@ -144,10 +173,10 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         let _ = writeln!(text, "  {name:<22} {value}");
     };
     let Estimate { value, low, high } = fit.friction_coefficient;
-    let of = if fit.division == Division::Means { "of all means" } else { "the mean of this recording" };
+    let of = if fit.data.division == Division::Means { "of all means" } else { "the mean of this recording" };
     line("friction coefficient", format!("{value:.3} (95 % interval {low:.3} to {high:.3}), {of}"));
     let Estimate { value, low, high } = fit.electric_friction_n;
-    let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.normal_load_n);
+    let (voltage, load_n) = (fit.stated_voltage_v_rms, fit.data.normal_load_n);
     let [value_mn, low_mn, high_mn] = [value, low, high].map(|newtons| 1e3 * newtons);
     line(
         "electric friction",
@@ -159,12 +188,12 @@ pub fn words(fit: &Fit, screen: &str) -> String {
     line("exponent of the load", exponent_words(&fit.load_exponent, NO_VERDICT_OF_LOAD));
     line(
         "data",
-        match fit.division {
-            Division::Means => format!("{} means with their errors", fit.rows),
-            _ => format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.rows),
+        match fit.data.division {
+            Division::Means => format!("{} means with their errors", fit.data.rows),
+            _ => format!("{} strokes, {} rows of steady sliding", fit.strokes.len(), fit.data.rows),
         },
     );
-    if let Some(bandwidth_hz) = fit.bandwidth_hz {
+    if let Some(bandwidth_hz) = fit.data.bandwidth_hz {
         let rise_ms = 1e3 * BANDWIDTH_TIMES_RISE / bandwidth_hz;
         line("force sensor", format!("follows a switch of the drive in {rise_ms:.1} ms, as with {bandwidth_hz:.0} Hz"));
     }
@@ -176,7 +205,7 @@ pub fn words(fit: &Fit, screen: &str) -> String {
         "convention",
         format!("radius 8 mm, stiffness 18 MPa/m; with them the skin gap is {skin_um:.2} um on the screen {screen}"),
     );
-    let notes = notes(fit).into_iter().map(str::to_owned).chain(fit.preparation.notes(fit.division));
+    let notes = notes(fit).into_iter().map(str::to_owned).chain(fit.data.preparation.notes(fit.data.division));
     for note in notes {
         let _ = writeln!(text, "  note: {note}");
     }
@@ -204,37 +233,37 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
          stiffness are a convention, and the profile holds for the screen it was measured on",
         "the friction coefficient is that of this recording: skin gets moist within minutes, and friction with it",
     ];
-    if fit.division == Division::Means {
+    if fit.data.division == Division::Means {
         notes.push(
             "means cannot tell how strokes or people differ, nor what they have in common: intervals come from the stated \
              errors, as if the means were independent, and are those of the mean finger",
         );
         notes.push("in means, nobody checked that fingers slid steadily, nor that they did not change while they were measured");
-        if fit.load_range_n.0 >= fit.load_range_n.1 {
+        if fit.data.load_range_n.0 >= fit.data.load_range_n.1 {
             notes.push("all loads are equal, so the means say nothing about other loads");
         }
         return notes;
     }
-    if fit.division == Division::Motion {
+    if fit.data.division == Division::Motion {
         notes.push("without a column stroke, strokes were divided where the direction, the speed or the clock says so");
     }
-    if fit.division == Division::Blocks {
+    if fit.data.division == Division::Blocks {
         notes.push(
             "without a column stroke and without turns in the data, consecutive rows were taken as 24 blocks: the \
              intervals are right only if rows stand in the order in which they were measured",
         );
     }
-    if !fit.has_time {
+    if !fit.data.has_time {
         notes.push("without a column time_s, starts and turns could not be left out, and the first quarter and the last tenth of each phase \
              of the drive stood in for the lag of friction");
     }
-    if fit.bandwidth_hz.is_none() {
+    if fit.data.bandwidth_hz.is_none() {
         notes.push(
             "too few switches, too much noise or too few rows a second to tell the bandwidth of the force sensor; electric \
              friction did not depend on how many rows beside a switch were left out",
         );
     }
-    if !fit.has_speed {
+    if !fit.data.has_speed {
         notes.push("without a column speed_mm_s, nobody checked that the finger slid at 20 to 100 mm/s");
     }
     notes

@@ -10,12 +10,12 @@ use crate::table::{Column, Place, Reading, Table, Unit, not_a_number};
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
 
-pub(super) const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts);
-pub(super) const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::Newtons);
-pub(super) const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::Newtons);
-pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit::Seconds);
+pub(super) const VOLTAGE: Column = Column::new("voltage_v_rms", "volts rms").converted(Unit::VOLTS);
+pub(super) const LOAD: Column = Column::new("normal_force_n", "newtons").converted(Unit::NEWTONS);
+pub(super) const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::NEWTONS);
+pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit::SECONDS);
 pub(super) const STROKE: Column = Column::new("stroke", "");
-pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MillimetresPerSecond);
+pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MILLIMETRES_PER_SECOND);
 
 /// A row of a recording. Unknown values are `None`.
 #[derive(Clone, Debug, PartialEq)]

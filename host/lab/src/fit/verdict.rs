@@ -1,11 +1,13 @@
 //! The verdict of a fit on the model, and the rules for its estimates.
 
+use serde::Serialize;
+
 use super::error::FitError;
 use super::intervals::Fitted;
 use super::law::{Attraction, Coupling, REFERENCE_V_RMS};
 use super::least_squares::{Form, Measured, Observation, Solution, residuals_n, solve};
 use super::search::{Replicate, coupling_of};
-use super::{Division, Fit, Settings, StrokeResult};
+use super::{DataSummary, Division, Fit, Settings, StrokeResult};
 use crate::bootstrap::{Estimate, Z_95, Z_999};
 use crate::statistics::mean;
 
@@ -35,9 +37,11 @@ const DRIFT_SHARE: f64 = 0.15;
 const STEP: f64 = 0.01;
 
 /// Verdict of an exponent on the model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// The data are inconclusive.
+    #[default]
     None,
     /// Consistent with the model, within the 95 % interval and, for the voltage, the effect of charge leakage.
     Kept,
@@ -198,11 +202,10 @@ fn exact(observations: &[Observation], solution: &Solution) -> Option<Vec<Observ
 
 /// Fails if estimates are too uncertain, or if the finger changed while it was measured.
 pub(super) fn check_estimates(
-    division: Division,
+    data: &DataSummary,
     strokes: &[StrokeResult],
     friction_coefficient: &Estimate,
     electric_friction_n: &Estimate,
-    normal_load_n: f64,
 ) -> Result<(), FitError> {
     let third = strokes.len() / 3;
     let first = strokes.get(..third).unwrap_or_default();
@@ -218,11 +221,11 @@ pub(super) fn check_estimates(
     let natural = [weighted_mean(first, natural), weighted_mean(last, natural)];
     let electric = [weighted_mean(first, electric), weighted_mean(last, electric)];
     // Rows of means do not stand in the order of time.
-    if division != Division::Means {
+    if data.division != Division::Means {
         check_drift("friction coefficient", natural, 1.0)?;
         check_drift("electric friction in newtons", electric, electric_friction_n.value)?;
     }
-    let natural_n = friction_coefficient.value * normal_load_n;
+    let natural_n = friction_coefficient.value * data.normal_load_n;
     for (quantity, estimate, natural) in [
         ("friction coefficient", friction_coefficient, friction_coefficient.value),
         ("electric friction in newtons", electric_friction_n, natural_n),
@@ -231,7 +234,7 @@ pub(super) fn check_estimates(
         let room = (high - value).max(value - low);
         // An estimate that is no larger than its error is none.
         if room > INTERVAL_SHARE * natural || room >= value {
-            let advice = match division {
+            let advice = match data.division {
                 Division::Means => "give means of more values",
                 Division::Column | Division::Motion | Division::Blocks => "record more strokes, more evenly",
             };

@@ -22,16 +22,16 @@ pub(super) const FRICTIONS: [&str; 2] = ["friction_n", "electric_friction_n"];
 /// Columns that every row needs, independent of its variant.
 const COMMON: [Column; 5] = [
     Column::new(VARIANT, ""),
-    Column::new(RADIUS, "metres").converted(Unit::Metres),
-    Column::new(COATING, "metres").converted(Unit::Metres),
+    Column::new(RADIUS, "metres").converted(Unit::METRES),
+    Column::new(COATING, "metres").converted(Unit::METRES),
     Column::new(PERMITTIVITY, ""),
     Column::new(FRICTION_COEFFICIENT, ""),
 ];
 /// Columns that some variants need.
 const PARTICULAR: [Column; 6] = [
     Column::new(STIFFNESS, "pascals per metre"),
-    Column::new(NORMAL_FORCE, "newtons").converted(Unit::Newtons),
-    Column::new(OUTER_RADIUS, "metres").converted(Unit::Metres),
+    Column::new(NORMAL_FORCE, "newtons").converted(Unit::NEWTONS),
+    Column::new(OUTER_RADIUS, "metres").converted(Unit::METRES),
     Column::new(MODULUS, "pascals"),
     Column::new(STRESS_EXPONENT, ""),
     Column::new(SHAPE_CONSTANT, ""),

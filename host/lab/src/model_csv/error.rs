@@ -19,29 +19,14 @@ pub enum CsvError {
     Write(io::Error),
 }
 
-/// Why a row is invalid.
-#[derive(Debug, Error)]
-pub(super) enum Refusal {
-    #[error("row {row}, column {column}: the header has no such column, and {variant} needs it")]
-    ColumnMissing { row: u64, column: &'static str, variant: String },
-    #[error("row {row}, column {column}: {found} is out of the range of f32; use --precision f64")]
-    OutOfF32 { row: u64, column: &'static str, found: String },
-    #[error("row {row}, column variant: expected {expected}, found {found:?}")]
-    Variant { row: u64, expected: String, found: String },
-    #[error("row {row}: friction_n and electric_friction_n are both filled in; leave one empty")]
-    BothFrictions { row: u64 },
-    #[error("row {row}, column friction_n: neither it nor electric_friction_n is filled in")]
-    NoFriction { row: u64 },
-    #[error("the answer is too large or too small for this precision")]
-    OutOfRange,
-    #[error("{}", .0.found())]
-    Cell(#[from] TableError),
-    #[error("{0}")]
-    Parameter(ParameterError),
-    #[error("{0}")]
-    State(StateError),
-    #[error("{0}")]
-    Inverse(InverseError),
+/// Why a row is invalid: the text after `invalid: ` in its status.
+#[derive(Debug)]
+pub(super) struct Refusal(pub(super) String);
+
+impl From<TableError> for Refusal {
+    fn from(error: TableError) -> Self {
+        Self(error.found().to_owned())
+    }
 }
 
 impl From<ParameterError> for Refusal {
@@ -57,18 +42,18 @@ impl From<ParameterError> for Refusal {
         };
         // A pull is a negative load.
         let found = if error.parameter == "pull_n" { -error.found } else { error.found };
-        Self::Parameter(ParameterError { parameter, found, ..error })
+        Self(ParameterError { parameter, found, ..error }.to_string())
     }
 }
 
 impl From<StateError> for Refusal {
     fn from(error: StateError) -> Self {
-        if let StateError::Parameter(error) = error { error.into() } else { Self::State(error) }
+        if let StateError::Parameter(error) = error { error.into() } else { Self(error.to_string()) }
     }
 }
 
 impl From<InverseError> for Refusal {
     fn from(error: InverseError) -> Self {
-        if let InverseError::Parameter(error) = error { error.into() } else { Self::Inverse(error) }
+        if let InverseError::Parameter(error) = error { error.into() } else { Self(error.to_string()) }
     }
 }

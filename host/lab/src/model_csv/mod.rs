@@ -116,13 +116,13 @@ struct Direction {
 }
 
 const EVAL: Direction = Direction {
-    given: &[Column::new(VOLTAGE, "volts rms").converted(Unit::Volts)],
+    given: &[Column::new(VOLTAGE, "volts rms").converted(Unit::VOLTS)],
     answers: &["sigma0_pa", "contact_radius_m", "effective_stiffness_pa_per_m", "friction_n"],
 };
 const INVERT: Direction = Direction {
     given: &[
-        Column::new(FRICTIONS[0], "newtons").converted(Unit::Newtons),
-        Column::new(FRICTIONS[1], "newtons").converted(Unit::Newtons),
+        Column::new(FRICTIONS[0], "newtons").converted(Unit::NEWTONS),
+        Column::new(FRICTIONS[1], "newtons").converted(Unit::NEWTONS),
     ],
     answers: &["voltage_v"],
 };
@@ -151,14 +151,14 @@ fn transform(
     let mut summary = Summary { understood: table.understood(), ..Summary::default() };
     while let Some(row) = table.next_row()? {
         summary.rows += 1;
-        let (cells, status) = match answer(&Row::new(row, &columns)) {
+        let (cells, status) = match answer(&Row { cells: row, columns: &columns }) {
             Ok(answer) => {
                 summary.beyond_finger_rows += u64::from(answer.beyond_finger);
                 (answer.cells.into_iter().map(|cell| dialect.number(cell)).collect(), answer.status.to_owned())
             }
-            Err(refusal) => {
+            Err(Refusal(reason)) => {
                 summary.invalid_rows += 1;
-                (vec![String::new(); direction.answers.len()], format!("invalid: {refusal}"))
+                (vec![String::new(); direction.answers.len()], format!("invalid: {reason}"))
             }
         };
         // A row of the wrong length is invalid, and is padded or cut so that its status is in the status column.
@@ -188,9 +188,13 @@ fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {
 fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let model = Model::<T>::read(row)?;
     let [total, electric] = FRICTIONS;
+    let number = row.cells.number();
+    let refused = |reason: &str| Err(Refusal(format!("row {number}{reason}")));
     let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
-        (true, true) => return Err(Refusal::BothFrictions { row: row.number() }),
-        (false, false) => return Err(Refusal::NoFriction { row: row.number() }),
+        (true, true) => return refused(": friction_n and electric_friction_n are both filled in; leave one empty"),
+        (false, false) => {
+            return refused(", column friction_n: neither it nor electric_friction_n is filled in");
+        }
         (true, false) => model.contact.voltage_for_friction(row.real(total)?),
         (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
     };
@@ -205,6 +209,8 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
 
 /// Formats the numbers; fails if one of them is not finite.
 fn cells<T: Number>(numbers: &[T]) -> Result<Vec<String>, Refusal> {
-    let all_finite = numbers.iter().all(|number| number.is_finite());
-    if all_finite { Ok(numbers.iter().map(|number| number.digits()).collect()) } else { Err(Refusal::OutOfRange) }
+    if numbers.iter().all(|number| number.is_finite()) {
+        return Ok(numbers.iter().map(|number| number.digits()).collect());
+    }
+    Err(Refusal("the answer is too large or too small for this precision".to_owned()))
 }

@@ -25,11 +25,12 @@ pub(super) struct Model<T> {
 
 impl<T: Number> Model<T> {
     pub(super) fn read(row: &Row) -> Result<Self, Refusal> {
-        row.check_length()?;
+        row.cells.check_length()?;
         let variant = row.text(VARIANT);
         if !VARIANTS.contains(&variant.as_ref()) {
-            let expected = format!("one of {}", VARIANTS.join(", "));
-            return Err(Refusal::Variant { row: row.number(), expected, found: row.quoted(VARIANT) });
+            let (row, found) = (row.cells.number(), row.quoted(VARIANT));
+            let names = VARIANTS.join(", ");
+            return Err(Refusal(format!("row {row}, column variant: expected one of {names}, found {found:?}")));
         }
         let radius_m = row.real(RADIUS)?;
         let (thickness_m, relative_permittivity) = (row.real(COATING)?, row.real(PERMITTIVITY)?);

@@ -23,7 +23,13 @@ const VALUES_MAX: u64 = 64 << 20;
 /// Fails if a recording with so many rows and columns is too long to be read back. Asked before it is made.
 pub fn check_length(rows: u64, columns: usize) -> Result<(), RecordingError> {
     let max = ROWS_MAX.min(VALUES_MAX / columns.max(1) as u64);
-    if rows > max { Err(RecordingError::TooLong { rows, columns, max }) } else { Ok(()) }
+    if rows <= max {
+        return Ok(());
+    }
+    Err(RecordingError::refused(format!(
+        "it would have {rows} rows of {columns} columns, and at most {max} are read back: record for a shorter time, or \
+         fewer rows a second"
+    )))
 }
 
 /// Most pages of all columns.
@@ -77,7 +83,7 @@ pub(super) fn check_footer(encoded: &[u8]) -> Result<(), RecordingError> {
 /// A `SchemaElement`: only the first one has children.
 fn schema_element(footer: &mut Thrift<'_>, is_root: bool) -> Result<(), RecordingError> {
     footer.fields(|element, id, kind| match (id, kind) {
-        (5, I32) if element.count()? > 0 && !is_root => Err(RecordingError::Nested),
+        (5, I32) if element.count()? > 0 && !is_root => Err(RecordingError::nested()),
         (5, I32) => Ok(true),
         _ => Ok(false),
     })

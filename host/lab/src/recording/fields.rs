@@ -58,13 +58,21 @@ impl Values {
 
     /// Adds the value of a cell of a table; false if it is none.
     pub(super) fn push(&mut self, cell: &str) -> bool {
-        let is_empty = cell.is_empty();
-        match self {
-            Self::Numbers(values) => values.push(cell.parse().ok().filter(|number: &f64| number.is_finite())),
-            Self::Integers(values) => values.push(cell.parse().ok()),
-            Self::Texts(values) => values.push((!is_empty).then(|| cell.to_owned())),
-        }
-        is_empty || self.bits(self.len() - 1).is_some()
+        let is_known = match self {
+            Self::Numbers(values) => {
+                values.push(cell.parse().ok().filter(|number: &f64| number.is_finite()));
+                values.last().is_some_and(Option::is_some)
+            }
+            Self::Integers(values) => {
+                values.push(cell.parse().ok());
+                values.last().is_some_and(Option::is_some)
+            }
+            Self::Texts(values) => {
+                values.push((!cell.is_empty()).then(|| cell.to_owned()));
+                true
+            }
+        };
+        is_known || cell.is_empty()
     }
 
     /// Number of values.
@@ -81,12 +89,14 @@ impl Values {
         self.len() == 0
     }
 
-    /// A value for comparison by its bits.
-    pub(super) fn bits(&self, row: usize) -> Option<Bits<'_>> {
-        match self {
-            Self::Numbers(values) => values.get(row)?.map(|value| Bits::Number(value.to_bits())),
-            Self::Integers(values) => values.get(row)?.map(Bits::Integer),
-            Self::Texts(values) => values.get(row)?.as_deref().map(Bits::Text),
+    /// Whether a value is that of another column, bit by bit.
+    pub(super) fn is_same(&self, other: &Self, row: usize) -> bool {
+        let bits = |values: &[Option<f64>]| values.get(row).map(|value| value.map(f64::to_bits));
+        match (self, other) {
+            (Self::Numbers(one), Self::Numbers(other)) => bits(one) == bits(other),
+            (Self::Integers(one), Self::Integers(other)) => one.get(row) == other.get(row),
+            (Self::Texts(one), Self::Texts(other)) => one.get(row) == other.get(row),
+            _ => false,
         }
     }
 
@@ -111,14 +121,6 @@ impl Values {
             Self::Texts(values) => Self::Texts(values.get(from..to).unwrap_or_default().to_vec()),
         }
     }
-}
-
-/// A value whose equality is that of the bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Bits<'a> {
-    Number(u64),
-    Integer(i32),
-    Text(&'a str),
 }
 
 /// How a column is taken from the rows of a play.
@@ -155,30 +157,26 @@ const PLAY: [(&str, &str, &str, Source); 12] = [
 ];
 
 /// The columns of a stroke that `frixel board record` writes.
-const STROKE: [(&str, &str, &str, Kind); 3] = [
-    ("t_s", "s", "time since the first touch", Kind::Number),
-    ("x_mm", "mm", "the finger's place from the left edge of the screen", Kind::Number),
-    ("y_mm", "mm", "the finger's place from the top edge of the screen", Kind::Number),
-];
-
-/// The columns of a calibration.
-const CALIBRATION: [(&str, &str, &str, Kind); 6] = [
-    ("time_s", "s", "time on the board's clock", Kind::Number),
-    ("stroke", "", "name of the stroke", Kind::Text),
-    ("voltage_v_rms", "V", "rms voltage of the envelope", Kind::Number),
-    ("normal_force_n", "N", "force of the finger on the screen", Kind::Number),
-    ("friction_n", "N", "friction that the sensor measured", Kind::Number),
-    ("speed_mm_s", "mm/s", "the finger's sliding speed", Kind::Number),
-];
-
-/// The columns of a stroke.
 pub fn stroke_fields() -> Vec<Field> {
-    STROKE.map(Field::of).into()
+    let fields = [
+        ("t_s", "s", "time since the first touch", Kind::Number),
+        ("x_mm", "mm", "the finger's place from the left edge of the screen", Kind::Number),
+        ("y_mm", "mm", "the finger's place from the top edge of the screen", Kind::Number),
+    ];
+    fields.map(Field::of).into()
 }
 
 /// The columns of a calibration.
 pub fn calibration_fields() -> Vec<Field> {
-    CALIBRATION.map(Field::of).into()
+    let fields = [
+        ("time_s", "s", "time on the board's clock", Kind::Number),
+        ("stroke", "", "name of the stroke", Kind::Text),
+        ("voltage_v_rms", "V", "rms voltage of the envelope", Kind::Number),
+        ("normal_force_n", "N", "force of the finger on the screen", Kind::Number),
+        ("friction_n", "N", "friction that the sensor measured", Kind::Number),
+        ("speed_mm_s", "mm/s", "the finger's sliding speed", Kind::Number),
+    ];
+    fields.map(Field::of).into()
 }
 
 /// The columns of a play.

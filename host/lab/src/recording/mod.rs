@@ -17,8 +17,6 @@ mod replay;
 mod replayed_changes;
 mod seal;
 
-use std::fmt::{self, Display};
-
 use frixel_felt::recorder::FeltRow;
 
 pub use claims::check_length;
@@ -27,7 +25,9 @@ pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_valu
 pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};
 pub use of_person::is_of_person;
 pub use parquet_reader::MAGIC;
-pub use parquet_writer::{ParquetWriter, table_parquet};
+pub use parquet_writer::ParquetWriter;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use parquet_writer::table_parquet;
 pub use replay::ReplayError;
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
@@ -66,15 +66,17 @@ impl Recording {
         let mut reader = csv::Reader::from_reader(csv);
         let header = reader.headers().map_err(RecordingError::Table)?.clone();
         let place = |field: &Field| header.iter().position(|name| name == field.name);
-        let places: Vec<usize> =
-            fields.iter().map(|field| place(field).ok_or(RecordingError::OtherColumns)).collect::<Result<_, _>>()?;
+        let places: Vec<usize> = fields
+            .iter()
+            .map(|field| place(field).ok_or_else(RecordingError::other_columns))
+            .collect::<Result<_, _>>()?;
         let column = |field: Field| Column { values: Values::none(field.kind), field };
         let mut columns: Vec<Column> = fields.into_iter().map(column).collect();
         for row in reader.records() {
             let row = row.map_err(RecordingError::Table)?;
             for (column, place) in columns.iter_mut().zip(&places) {
                 if !column.values.push(row.get(*place).unwrap_or_default()) {
-                    return Err(RecordingError::OtherColumns);
+                    return Err(RecordingError::other_columns());
                 }
             }
         }
@@ -102,75 +104,27 @@ impl Recording {
         writer.into_inner().unwrap_or_default()
     }
 
-    /// The first row in which another recording differs by a bit, and the first column there; `None` if there is none.
-    pub fn first_difference(&self, other: &Self) -> Option<Difference> {
-        let names = |recording: &Self| -> Vec<String> {
-            recording.columns.iter().map(|column| column.field.name.clone()).collect()
+    /// Where a recording that was played again first differs from this one by a bit: the names of its columns, a cell,
+    /// or the number of rows. `None` if it does not differ.
+    pub fn first_difference(&self, played: &Self) -> Option<String> {
+        let names = |recording: &Self| {
+            recording.columns.iter().map(|column| column.field.name.as_str()).collect::<Vec<_>>().join(", ")
         };
-        if names(self) != names(other) {
-            return Some(Difference::Columns { one: names(self), other: names(other) });
+        let (own, others) = (names(self), names(played));
+        if own != others {
+            return Some(format!("the columns are {others}, and not {own}"));
         }
-        let pairs = || self.columns.iter().zip(&other.columns);
-        let rows = self.rows().min(other.rows());
-        let differs = |row: &usize| pairs().any(|(one, other)| one.values.bits(*row) != other.values.bits(*row));
-        if let Some(row) = (0..rows).find(differs) {
-            let (one, other) = pairs().find(|(one, other)| one.values.bits(row) != other.values.bits(row))?;
-            let cells = (one.values.text(row), other.values.text(row));
-            return Some(Difference::Cell { row, column: one.field.name.clone(), one: cells.0, other: cells.1 });
-        }
-        let counts = (self.rows(), other.rows());
-        (counts.0 != counts.1).then_some(Difference::Rows { one: counts.0, other: counts.1 })
-    }
-}
-
-/// Where two recordings differ.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Difference {
-    /// The names of the columns.
-    Columns {
-        /// Names of the first recording.
-        one: Vec<String>,
-        /// Names of the other one.
-        other: Vec<String>,
-    },
-    /// A value.
-    Cell {
-        /// Number of the row, from zero.
-        row: usize,
-        /// Name of the column.
-        column: String,
-        /// The value of the first recording; empty if it is unknown.
-        one: String,
-        /// That of the other one.
-        other: String,
-    },
-    /// The number of rows; those that both have are the same.
-    Rows {
-        /// Rows of the first recording.
-        one: usize,
-        /// Rows of the other one.
-        other: usize,
-    },
-}
-
-impl Display for Difference {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let known = |text: &str| if text.is_empty() { "unknown".to_owned() } else { text.to_owned() };
-        match self {
-            Self::Columns { one, other } => {
-                write!(formatter, "the columns are {}, and not {}", other.join(", "), one.join(", "))
+        let pairs = || self.columns.iter().zip(&played.columns);
+        for row in 0..self.rows().min(played.rows()) {
+            if let Some((one, other)) = pairs().find(|(one, other)| !one.values.is_same(&other.values, row)) {
+                let [found, again] = [one, other].map(|column| column.values.text(row));
+                let known = |text: String| if text.is_empty() { "unknown".to_owned() } else { text };
+                let (row, column, found, again) = (row + 1, &one.field.name, known(found), known(again));
+                return Some(format!("row {row}, column {column}: {found} in the file, {again} played"));
             }
-            Self::Cell { row, column, one, other } => {
-                write!(
-                    formatter,
-                    "row {}, column {column}: {} in the file, {} played",
-                    row + 1,
-                    known(one),
-                    known(other)
-                )
-            }
-            Self::Rows { one, other } => write!(formatter, "{one} rows in the file, {other} played"),
         }
+        let (found, again) = (self.rows(), played.rows());
+        (found != again).then(|| format!("{found} rows in the file, {again} played"))
     }
 }
 

@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};
 
+use super::claims::FOOTER_MAX_BYTES;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
 
 /// Number of bytes at the beginning of a file that identify it.
 const HEAD: u64 = 4096;
-/// Largest footer of a Parquet file that is read.
-const FOOTER_MAX_BYTES: u32 = 64 << 20;
 /// The columns of a recorded stroke, the one that a person's play adds to it, and those of a recording of friction.
 const STROKE_COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
 const PARTICIPANT: &str = "participant";
@@ -44,13 +43,13 @@ pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
 fn footer(file: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     let end = tail(file, 8)?;
     let [a, b, c, d, ..] = end[..] else { return Ok(end) };
-    tail(file, u32::from_le_bytes([a, b, c, d]).saturating_add(8).min(FOOTER_MAX_BYTES))
+    tail(file, (u64::from(u32::from_le_bytes([a, b, c, d])) + 8).min(FOOTER_MAX_BYTES))
 }
 
 /// The last bytes of a file.
-fn tail(file: &mut (impl Read + Seek), len: u32) -> io::Result<Vec<u8>> {
+fn tail(file: &mut (impl Read + Seek), len: u64) -> io::Result<Vec<u8>> {
     let mut tail = Vec::new();
-    file.seek(SeekFrom::End(-i64::from(len)))?;
+    file.seek(SeekFrom::End(-(len as i64)))?;
     file.read_to_end(&mut tail)?;
     Ok(tail)
 }

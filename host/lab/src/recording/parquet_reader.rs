@@ -3,6 +3,7 @@
 use std::panic::catch_unwind;
 
 use bytes::Bytes;
+use frixel_scene::brief;
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
@@ -40,17 +41,21 @@ impl Recording {
 
 fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
     if bytes.is_empty() {
-        return Err(RecordingError::Empty);
+        return Err(RecordingError::refused("it is empty: give a recording that `frixel play --record` has written"));
     }
     if !bytes.starts_with(MAGIC) {
-        return Err(RecordingError::NoParquet);
+        let sentence = "it is no Parquet file: give a recording that `frixel play --record` has written";
+        return Err(RecordingError::refused(sentence));
     }
     let (whole, footer) = whole_part(bytes)?;
     let is_cut_off = whole.len() < bytes.len();
     let file = SerializedFileReader::new(whole.clone()).map_err(RecordingError::Damaged)?;
     let (metadata, fields) = metadata_of(file.metadata())?;
     if !seal::is_whole(&whole, footer) {
-        return Err(RecordingError::Changed);
+        return Err(RecordingError::refused(
+            "its content has another hash than it says: it is damaged, or another program has written it anew; take another \
+             copy, or record anew",
+        ));
     }
     claims::check_pages(&whole, file.metadata())?;
     let mut text_bytes = 0;
@@ -60,7 +65,7 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
     });
     let columns = columns.collect::<Result<Vec<_>, RecordingError>>()?;
     if columns.len() != file.metadata().file_metadata().schema_descr().num_columns() {
-        return Err(RecordingError::OtherColumns);
+        return Err(RecordingError::other_columns());
     }
     Ok(Recording { metadata, columns, is_cut_off })
 }
@@ -115,7 +120,9 @@ fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
             return Err(RecordingError::Damaged(error));
         }
     }
-    Err(RecordingError::Truncated)
+    Err(RecordingError::refused(
+        "its end is missing, which says what the rest is, so that nothing can be read: take a whole copy, or record anew",
+    ))
 }
 
 fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), RecordingError> {
@@ -124,9 +131,15 @@ fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), Recordi
         let pair = pairs.into_iter().flatten().find(|pair| pair.key == key);
         pair.and_then(|pair| pair.value.as_deref())
     };
-    let format = text(KEY_FORMAT).ok_or(RecordingError::Foreign)?;
+    let Some(format) = text(KEY_FORMAT) else {
+        let sentence =
+            "it is a Parquet file without frixel's metadata: give one that `frixel play --record` has written";
+        return Err(RecordingError::refused(sentence));
+    };
     if format != FORMAT.to_string() {
-        return Err(RecordingError::Newer { found: format.to_owned(), known: FORMAT });
+        let found = brief(format);
+        let sentence = format!("it has format {found}, and this frixel reads format {FORMAT}: update frixel");
+        return Err(RecordingError::refused(sentence));
     }
     let metadata = Metadata {
         scene: text(KEY_SCENE).unwrap_or_default().to_owned(),
@@ -159,7 +172,7 @@ fn values(
         column.name() == field.name && column.physical_type() == physical && column.max_def_level() == 1
     };
     if !described.is_some_and(|column| is_same(&column)) {
-        return Err(RecordingError::OtherColumns);
+        return Err(RecordingError::other_columns());
     }
     let mut values = Values::none(field.kind);
     for group in 0..file.num_row_groups() {

@@ -43,9 +43,10 @@ impl Recording {
 
 /// A table that is no recording, such as the results of a study, as a Parquet file: units and meanings are in the
 /// metadata of its fields.
-pub fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
     let fields: Vec<Field> = columns.iter().map(|column| column.field.clone()).collect();
-    let pairs = vec![KeyValue::new(key_name(arrow_schema::KEY), arrow_schema::encoded(&fields, &[]))];
+    let pairs = vec![KeyValue::new(arrow_schema::KEY.to_owned(), arrow_schema::encoded(&fields, &[]))];
     let mut bytes = Vec::new();
     let mut writer = ParquetWriter::new(&mut bytes, fields)?;
     writer.write_all(columns)?;
@@ -155,15 +156,11 @@ fn pairs(metadata: &Metadata, fields: &[Field]) -> Result<Vec<KeyValue>, Recordi
     let in_arrow: Vec<(&str, &str)> = pairs.iter().map(|(key, text)| (*key, text.as_str())).chain([pandas]).collect();
     let schema = arrow_schema::encoded(fields, &in_arrow);
     pairs.extend([(arrow_schema::KEY, schema), (seal::KEY, seal::UNKNOWN.to_owned())]);
-    Ok(pairs.into_iter().map(|(key, text)| KeyValue::new(key_name(key), text)).collect())
+    Ok(pairs.into_iter().map(|(key, text)| KeyValue::new(key.to_owned(), text)).collect())
 }
 
 fn json<T: Serialize + ?Sized>(key: &'static str, value: &T) -> Result<String, RecordingError> {
     serde_json::to_string(value).map_err(|source| RecordingError::Metadata { key, source })
-}
-
-fn key_name(key: &str) -> String {
-    key.to_owned()
 }
 
 fn schema(fields: &[Field]) -> ParquetResult<Type> {

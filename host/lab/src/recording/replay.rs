@@ -22,53 +22,12 @@ type FileBytes = BTreeMap<String, Vec<u8>>;
 /// Why a recording cannot be played again.
 #[derive(Debug, Error)]
 pub enum ReplayError {
-    /// It is of the emulated board.
-    #[error("it is of the emulated board, and only --port sim is played again")]
-    Emulated,
-    /// It is of a virtual board.
-    #[error("it is of a virtual board at a port, which runs in real time")]
-    Virtual,
-    /// It is of a real board.
-    #[error("it is of a board at a port, under a person's finger")]
-    Board,
-    /// Another version made it, and this one may play otherwise.
-    #[error("frixel {} recorded it, and this is {}: use that version", brief(.found), Metadata::VERSION)]
-    OtherVersion {
-        /// The version.
-        found: String,
-    },
-    /// It has no options of a play.
-    #[error("it does not say how it was played")]
-    NoOptions,
-    /// Lines changed it that it does not have.
-    #[error("lines on standard input changed it (--control), which the recording does not have")]
-    Controlled,
-    /// Samples were streamed that it does not have.
-    #[error("samples were streamed into it (--stream), which the recording does not have")]
-    Streamed,
-    /// A file of it was too large to be kept.
-    #[error("it has only the hash of the file {}, which is large", brief(.name))]
-    OnlyHash {
-        /// What the file is.
-        name: String,
-    },
-    /// A file of it is not there, or damaged.
-    #[error("it has not the file {} that it was played with, or a damaged one: take the recording from a copy", brief(.name))]
-    MissingFile {
-        /// What the file is.
-        name: String,
-    },
+    /// It is not of this rig or version, or it lacks a part of what it was played with.
+    #[error("{0}")]
+    Refused(String),
     /// Its scene or a profile has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// A profile of another frixel.
-    #[error("this frixel has no {what} called {}: use the one that recorded it", brief(.name))]
-    NotBundled {
-        /// What it is.
-        what: &'static str,
-        /// Its name.
-        name: String,
-    },
     /// Its stroke has mistakes.
     #[error("its stroke cannot be read: {0}")]
     Stroke(#[from] StrokeFileError),
@@ -112,16 +71,21 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, ReplayError> {
     let Metadata { frixel, rig, play, .. } = metadata;
     match rig.as_str() {
         "sim" => {}
-        "qemu" | "pico" => return Err(ReplayError::Emulated),
-        _ if metadata.is_simulated => return Err(ReplayError::Virtual),
-        _ => return Err(ReplayError::Board),
+        "qemu" | "pico" => return Err(refused("it is of the emulated board, and only --port sim is played again")),
+        _ if metadata.is_simulated => {
+            return Err(refused("it is of a virtual board at a port, which runs in real time"));
+        }
+        _ => return Err(refused("it is of a board at a port, under a person's finger")),
     }
     if frixel != Metadata::VERSION {
-        return Err(ReplayError::OtherVersion { found: frixel.clone() });
+        let (found, own) = (brief(frixel), Metadata::VERSION);
+        return Err(refused(format!("frixel {found} recorded it, and this is {own}: use that version")));
     }
     match serde_json::from_value::<PlayOptions>(play.clone()) {
-        Err(_) => Err(ReplayError::NoOptions),
-        Ok(PlayOptions { control: true, lines: None, .. }) => Err(ReplayError::Controlled),
+        Err(_) => Err(refused("it does not say how it was played")),
+        Ok(PlayOptions { control: true, lines: None, .. }) => {
+            Err(refused("lines on standard input changed it (--control), which the recording does not have"))
+        }
         Ok(options) => Ok(options),
     }
 }
@@ -136,8 +100,10 @@ fn stopped_at_tick(metadata: &Metadata) -> Option<u64> {
 fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError> {
     let bytes = |(name, file): (&String, &SourceFile)| match (file.bytes(), file) {
         (Some(bytes), _) => Ok((name.clone(), bytes)),
-        (None, SourceFile::Hash { .. }) => Err(ReplayError::OnlyHash { name: name.clone() }),
-        (None, _) => Err(ReplayError::MissingFile { name: name.clone() }),
+        (None, SourceFile::Hash { .. }) => {
+            Err(refused(format!("it has only the hash of the file {}, which is large", brief(name))))
+        }
+        (None, _) => Err(missing(name)),
     };
     files.iter().map(bytes).collect()
 }
@@ -178,7 +144,7 @@ fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result
     });
     let is_ended = events.any(|event| *event == MarkedEvent::StreamEnded);
     let (Some(sample_hz), Some(bytes)) = (sample_hz, files.get(PlayOptions::STREAM)) else {
-        return Err(ReplayError::Streamed);
+        return Err(refused("samples were streamed into it (--stream), which the recording does not have"));
     };
     let sample = |pair: &[u8]| Some(u16::from_le_bytes(pair.try_into().ok()?));
     let samples: Vec<u16> = bytes.chunks_exact(2).filter_map(sample).collect();
@@ -212,7 +178,9 @@ fn profile<P: Profile>(option: Option<&String>, file: &str, files: &FileBytes) -
     };
     let read = NamedProfile { name, text }.read();
     read.map(Some).map_err(|error| match error {
-        ProfileError::NotBundled { kind, name, .. } => ReplayError::NotBundled { what: kind, name },
+        ProfileError::NotBundled { kind, name, .. } => {
+            refused(format!("this frixel has no {kind} called {}: use the one that recorded it", brief(&name)))
+        }
         ProfileError::Mistakes(mistakes) => mistakes.into(),
     })
 }
@@ -227,5 +195,12 @@ fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, Re
 }
 
 fn missing(name: &str) -> ReplayError {
-    ReplayError::MissingFile { name: name.to_owned() }
+    let name = brief(name);
+    refused(format!(
+        "it has not the file {name} that it was played with, or a damaged one: take the recording from a copy"
+    ))
+}
+
+fn refused(sentence: impl Into<String>) -> ReplayError {
+    ReplayError::Refused(sentence.into())
 }

@@ -155,12 +155,15 @@ impl Checks {
 }
 
 impl Check {
+    /// Whether the host reports what is expected; everything else is seen in each tick.
+    fn is_of_reports(&self) -> bool {
+        matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_))
+    }
+
     /// Sets the span, without the time in which a late rig may still show the previous state or already the next one.
     /// Reports may come later by that time.
     fn set_span(&mut self, [start, end]: [u64; 2], lateness_ticks: u64) {
-        let is_said =
-            matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
-        self.span = Some(if is_said {
+        self.span = Some(if self.is_of_reports() {
             [start, end.saturating_add(lateness_ticks)]
         } else {
             [start + lateness_ticks, end.saturating_sub(lateness_ticks)]
@@ -204,9 +207,7 @@ impl Check {
         let span = format!("from {:.3} to {:.3} ms", clock.ms(start), clock.ms(end));
         let expected = format!("expected {} {span}", self.expected());
         let Found { first_wrong, ticks, last_driven_tick, friction_sum_n, friction_ticks } = self.found;
-        let is_of_ticks =
-            !matches!(self.expectation.condition, Condition::State(_) | Condition::Fault(_) | Condition::Error(_));
-        if is_of_ticks && ticks == 0 {
+        if !self.is_of_reports() && ticks == 0 {
             return Some(self.no_tick(clock, [start, end]));
         }
         match &self.expectation.condition {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use frixel_driver::{Device, DeviceError, PollingLink, ignore_progress};
 use frixel_hil_sim::BoardRig as _;
 use frixel_play::{PlayError, Player, RigStream, load};
-use frixel_scene::{Action, Program, Scenario, ScenarioCommand};
+use frixel_scene::{Action, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::payload::hello_request_frame;
 
@@ -33,27 +33,27 @@ pub(super) struct Host<'s, 'r> {
     programs: &'s Programs,
     line: ScenarioLine<'r>,
     player: Option<ScenarioPlayer<'r>>,
-    failures: Vec<Failure>,
+    pub(super) failures: Vec<Failure>,
     /// Line of the last command.
     last_line: usize,
 }
 
 /// Why a command is not carried out.
-enum CommandFailure {
-    Play(PlayError),
-    /// The connection was given up.
-    NotConnected,
+struct CommandFailure {
+    sentence: String,
+    /// Whether the host keeps its connection.
+    goes_on: bool,
 }
 
 impl From<PlayError> for CommandFailure {
     fn from(error: PlayError) -> Self {
-        Self::Play(error)
+        Self { sentence: error.to_string(), goes_on: error.is_refusal() }
     }
 }
 
 impl From<DeviceError> for CommandFailure {
     fn from(error: DeviceError) -> Self {
-        Self::Play(error.into())
+        PlayError::from(error).into()
     }
 }
 
@@ -94,11 +94,6 @@ impl<'s, 'r> Host<'s, 'r> {
         }
     }
 
-    /// The failures, in the order of time.
-    pub(super) fn into_failures(self) -> Vec<Failure> {
-        self.failures
-    }
-
     fn connect(&mut self) -> Result<(), CommandFailure> {
         let link = PollingLink::new(RigStream::new(self.line.clone()));
         self.player = Some(Player::new(Device::connect(link)?));
@@ -120,48 +115,63 @@ impl<'s, 'r> Host<'s, 'r> {
         }
     }
 
+    fn player(&mut self) -> Result<&mut ScenarioPlayer<'r>, CommandFailure> {
+        let sentence = "the connection was given up: write a command `connect` before";
+        self.player.as_mut().ok_or_else(|| CommandFailure { sentence: sentence.to_owned(), goes_on: true })
+    }
+
     fn perform(&mut self, action: &Action) -> Result<(), CommandFailure> {
+        let (programs, first_scene) = (self.programs, &self.scenario.scene);
         match action {
             Action::Connect => {
                 self.player = None;
-                return self.connect();
+                self.connect()?;
             }
-            Action::Hang { ms } => {
-                self.line.pass_to(self.line.ticks() + ticks_of(*ms, self.line.board().tick_hz));
-                return Ok(());
-            }
+            Action::Hang { ms } => self.line.pass_to(self.line.ticks() + ticks_of(*ms, self.line.board().tick_hz)),
             Action::Die => {
                 self.line.set_dead(true);
                 self.player = None;
                 self.line.set_dead(false);
-                return Ok(());
             }
             Action::OtherClient => {
                 let mut frame = [0; FRAME_MAX_LEN];
                 self.line.inject(hello_request_frame(&mut frame).map_err(DeviceError::from)?);
-                return Ok(());
             }
-            Action::Play => self.line.press_switch(),
-            _ => {}
-        }
-        let program = |scene: &str| self.programs.get(scene).cloned();
-        let Some(player) = &mut self.player else { return Err(CommandFailure::NotConnected) };
-        perform_with(player, action, &self.scenario.scene, &program)?;
-        if matches!(action, Action::Play) {
-            // The stroke begins anew with each play, not with the first one of a connection alone.
-            self.line.start_stroke();
+            Action::Play => {
+                self.line.press_switch();
+                let player = self.player()?;
+                if let Some(program) = programs.get(first_scene) {
+                    player.start(program.clone(), 0, &mut ignore_progress)?;
+                }
+                // The stroke begins anew with each play, not with the first one of a connection alone.
+                self.line.start_stroke();
+            }
+            Action::Upload => {
+                let player = self.player()?;
+                if let Some(program) = programs.get(first_scene) {
+                    load(player.device_mut(), program, &mut ignore_progress)?;
+                }
+            }
+            Action::Replace { scene } => {
+                let player = self.player()?;
+                if let Some(program) = programs.get(scene) {
+                    player.replace(program.clone())?;
+                }
+            }
+            Action::Stop => self.player()?.stop()?,
+            Action::ClearFault => self.player()?.clear_fault()?,
+            Action::Trigger { layer, duration_s } => {
+                self.player()?.trigger(layer, *duration_s)?;
+            }
+            Action::SetLayer { layer, gain } => {
+                self.player()?.change_layer(layer, None, gain.map(|gain| gain as f32))?;
+            }
         }
         Ok(())
     }
 
     /// Records a failure. A program that cannot continue closes its connection.
-    fn failed(&mut self, what: &str, failure: CommandFailure) {
-        let (sentence, goes_on) = match failure {
-            CommandFailure::Play(error) => (error.to_string(), error.is_refusal()),
-            CommandFailure::NotConnected => {
-                ("the connection was given up: write a command `connect` before".to_owned(), true)
-            }
-        };
+    fn failed(&mut self, what: &str, CommandFailure { sentence, goes_on }: CommandFailure) {
         if !goes_on {
             self.player = None;
         }
@@ -169,40 +179,6 @@ impl<'s, 'r> Host<'s, 'r> {
         let tick = self.line.tick();
         self.failures.push(Failure { line: self.last_line, what: what.to_owned(), tick, sentence, is_expected: false });
     }
-}
-
-/// Performs an action of a connected host.
-fn perform_with(
-    player: &mut ScenarioPlayer<'_>,
-    action: &Action,
-    scene: &str,
-    program: &dyn Fn(&str) -> Option<Program>,
-) -> Result<(), CommandFailure> {
-    let goes_on = &mut ignore_progress;
-    match action {
-        Action::Play => {
-            let Some(program) = program(scene) else { return Ok(()) };
-            player.start(program, 0, goes_on)?;
-        }
-        Action::Upload => {
-            let Some(program) = program(scene) else { return Ok(()) };
-            load(player.device_mut(), &program, goes_on)?;
-        }
-        Action::Stop => player.stop()?,
-        Action::ClearFault => player.clear_fault()?,
-        Action::Replace { scene } => {
-            let Some(program) = program(scene) else { return Ok(()) };
-            player.replace(program)?;
-        }
-        Action::Trigger { layer, duration_s } => {
-            player.trigger(layer, *duration_s)?;
-        }
-        Action::SetLayer { layer, gain } => {
-            player.change_layer(layer, None, gain.map(|gain| gain as f32))?;
-        }
-        Action::Connect | Action::Hang { .. } | Action::Die | Action::OtherClient => {}
-    }
-    Ok(())
 }
 
 /// The action as the file calls it.

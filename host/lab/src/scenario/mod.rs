@@ -167,6 +167,5 @@ pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> 
     let line = ScenarioLine::new(scenario, first_program(scenario, programs)?, rig);
     let mut host = Host::new(scenario, programs, line.clone());
     host.run();
-    let failures = host.into_failures();
-    line.outcome(scenario, failures)
+    line.outcome(scenario, host.failures)
 }

@@ -35,6 +35,20 @@ impl Verdicts {
             _ => Verdict::NotFelt,
         }
     }
+
+    /// Whether every finger that touched it notices it.
+    pub(super) fn is_felt_by_all(&self) -> bool {
+        self.felt == self.touched
+    }
+
+    /// Orders by the share of the fingers that touched it which notice it, and then by the share near the threshold.
+    fn cmp_felt(&self, other: &Self) -> Ordering {
+        let share = |count: fn(&Self) -> usize| {
+            let shares = [self, other].map(|verdicts| count(verdicts) as f64 / verdicts.touched as f64);
+            shares[0].total_cmp(&shares[1])
+        };
+        share(|verdicts| verdicts.felt).then(share(|verdicts| verdicts.maybe))
+    }
 }
 
 impl FromIterator<Verdict> for Verdicts {
@@ -50,13 +64,6 @@ impl FromIterator<Verdict> for Verdicts {
             } += 1;
         }
         counts
-    }
-}
-
-impl Verdicts {
-    /// Whether every finger that touched it notices it.
-    pub fn is_felt_by_all(&self) -> bool {
-        self.felt == self.touched
     }
 }
 
@@ -126,17 +133,6 @@ fn layer_score(title: &LayerTitle, fingers: &[Judgement]) -> Option<LayerScore> 
             weber_steps: median(borders().map(|border| border.step.weber_steps)),
         }),
     })
-}
-
-impl Verdicts {
-    /// Orders by the share of the fingers that touched it which notice it, and then by the share near the threshold.
-    pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
-        let share = |count: fn(&Self) -> usize| {
-            let shares = [self, other].map(|verdicts| count(verdicts) as f64 / verdicts.touched as f64);
-            shares[0].total_cmp(&shares[1])
-        };
-        share(|verdicts| verdicts.felt).then(share(|verdicts| verdicts.maybe))
-    }
 }
 
 impl LayerScore {

@@ -15,7 +15,8 @@ const SEED: u64 = 1;
 
 /// A number of [`Fidelity`].
 pub(super) struct Metric {
-    key: &'static str,
+    /// Name in JSON and CSV.
+    pub(super) key: &'static str,
     title: &'static str,
     unit: &'static str,
     /// Factor from SI units to `unit`.
@@ -81,11 +82,6 @@ impl Metric {
     /// A metric without a unit, of which nothing is known that a person notices, and without a goal.
     const fn new(key: &'static str, title: &'static str, value: fn(&Fidelity) -> Option<f64>) -> Self {
         Self { key, title, unit: "", factor: 1.0, value, human: || None, goal: None }
-    }
-
-    /// Name in JSON and CSV.
-    pub(super) fn key(&self) -> &'static str {
-        self.key
     }
 
     /// The number of a play, in the metric's unit; `None` where it does not exist.

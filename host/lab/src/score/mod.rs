@@ -25,8 +25,13 @@ use metric::METRICS;
 pub use metric::{GoalBound, Human, MetricScore};
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use metric::{interval, metric_keys};
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use text::quoted;
 pub use trials::{TrialPlan, TrialStroke, TrialsError};
 
+/// Most threads that play side by side. Each takes memory for boards and samples, and more of them than a machine has
+/// processors are not faster.
+pub const JOBS_MAX: u64 = 1000;
 /// Number of plays per thread whose samples are in memory; those of all plays would not fit.
 const PLAYS_PER_THREAD: usize = 4;
 

@@ -98,7 +98,7 @@ impl Score {
 
     /// A row for each play, with the numbers in the units of the table.
     pub fn to_csv(&self) -> String {
-        let keys: Vec<&str> = METRICS.iter().map(Metric::key).collect();
+        let keys: Vec<&str> = METRICS.iter().map(|metric| metric.key).collect();
         let mut text = format!("simulated_person,stroke,seed,{}\n", keys.join(","));
         for play in &self.plays {
             let value = |metric: &Metric| {
@@ -139,8 +139,8 @@ fn value_text(metric: &MetricScore) -> String {
     format!("{mean:.2}{interval}{space}{unit}{human}{goal}")
 }
 
-/// A cell of a CSV file.
-fn quoted(text: &str) -> String {
+/// A text as a cell of a CSV file.
+pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }
 

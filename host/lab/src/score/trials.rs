@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use frixel_hil_sim::{Person, Stroke, StrokeError};
+use frixel_hil_sim::{HUMAN_STROKE_MAX_S, Person, Stroke, StrokeError};
 use frixel_model::ParameterError;
 use frixel_play::GoesOn;
 use frixel_scene::{Program, Scene};
@@ -87,7 +87,9 @@ impl TrialPlan {
     pub const SEEDS: u64 = 2;
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
-    /// Largest number of people, strokes, repetitions and threads of a score.
+    /// Durations of a generated stroke in a sweep, s: a shorter one has no fidelity.
+    pub const SWEEP_SECONDS: RangeInclusive<f64> = 0.25..=HUMAN_STROKE_MAX_S;
+    /// Largest number of people, strokes and repetitions of a score.
     pub const COUNT_MAX: u64 = 1000;
     /// Median speeds of strokes of people, mm/s.
     pub const MEDIAN_SPEEDS_MM_PER_S: RangeInclusive<f64> = 1.0..=1000.0;

@@ -240,8 +240,7 @@ mod tests {
         ] {
             let text =
                 format!("version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.5\nregion = {region}\n");
-            let scene = Scene::parse(&text, "corner.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
-            let (missed, seconds) = missed(&scene);
+            let (missed, seconds) = missed(&parsed(&text));
             assert!(missed.is_empty(), "{region}: {missed:?}");
             assert_eq!(seconds > SWEEP_S, is_visited, "{region}");
         }
@@ -256,10 +255,7 @@ mod tests {
                     "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nangle_deg = {angle_deg}\n\
                      low_fraction = 0\nhigh_fraction = 0.9\n{region}"
                 );
-                let scene = Scene::parse(&text, "stripes.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
-                let board = RigConfig::default().board;
-                let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
-                let stroke = default_stroke(&program, None).unwrap();
+                let (_, stroke) = of(&parsed(&text));
                 assert_eq!(stroke.duration_s() > SWEEP_S, is_visited, "{angle_deg} {region}");
                 if is_visited {
                     let end = stroke.duration_s();
@@ -282,10 +278,7 @@ mod tests {
                     "version = 1\n[[layer]]\nkind = \"direction\"\nangle_deg = {angle_deg}\nalong_fraction = 0.1\n\
                      against_fraction = 0.9\n{region}"
                 );
-                let scene = Scene::parse(&text, "velvet.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap();
-                let board = RigConfig::default().board;
-                let program = compile(&scene, &board.limits, board.tick_hz).unwrap();
-                let stroke = default_stroke(&program, None).unwrap();
+                let (program, stroke) = of(&parsed(&text));
                 let reference = Reference::new(&program);
                 let places = (0..).map(|step| 1e-3 * f64::from(step)).take_while(|t_s| *t_s <= stroke.duration_s());
                 let fingers: Vec<_> = places.filter_map(|t_s| stroke.at(t_s)).collect();
@@ -304,11 +297,21 @@ mod tests {
         }
     }
 
-    /// The layers whose middle the default stroke misses by a fifth of a side, and its length in seconds.
-    fn missed(scene: &Scene) -> (Vec<String>, f64) {
+    fn parsed(text: &str) -> Scene {
+        Scene::parse(text, "scene.toml", &BTreeMap::<String, Vec<u8>>::new()).unwrap()
+    }
+
+    /// A scene on the simulator's board, and its default stroke.
+    fn of(scene: &Scene) -> (Program, Stroke) {
         let board = RigConfig::default().board;
         let program = compile(scene, &board.limits, board.tick_hz).unwrap();
         let stroke = default_stroke(&program, None).unwrap();
+        (program, stroke)
+    }
+
+    /// The layers whose middle the default stroke misses by a fifth of a side, and its length in seconds.
+    fn missed(scene: &Scene) -> (Vec<String>, f64) {
+        let (program, stroke) = of(scene);
         let steps = (0..).map(|step| 1e-4 * f64::from(step)).take_while(|t_s| *t_s <= stroke.duration_s());
         let way: Vec<_> = steps.filter_map(|t_s| stroke.at(t_s)).collect();
         let layers = TouchedLayers::new(&program);

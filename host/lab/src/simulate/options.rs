@@ -137,7 +137,7 @@ pub enum StrokeOptionsError {
 
 impl StrokeOptions {
     /// Whether the stroke is that of a file.
-    pub fn is_from_file(&self) -> bool {
+    pub(crate) fn is_from_file(&self) -> bool {
         self.name.as_deref() == Some(PlayOptions::FILE)
     }
 

@@ -6,11 +6,11 @@ use frixel_felt::judge::Verdict;
 use frixel_hil_sim::{Board, Person, StrokeError, WorldOptions};
 use frixel_model::ParameterError as ContactError;
 use frixel_play::{GoesOn, SimulationError};
-use frixel_scene::{CompileError, NamedProfile, ProfileError, Program, Scene, compile};
+use frixel_scene::{CompileError, FieldMistake, Message, Mistake, NamedProfile, ProfileError, Program, Scene, compile};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::parameter::Value;
+use super::parameter::{Value, nearest_field};
 use crate::GeneratedStroke;
 use crate::hash::sha256;
 use crate::score::{Score, TrialFinger, TrialPlan};
@@ -103,6 +103,14 @@ pub enum CellError {
     /// The scene has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// A parameter is no field of the scene, and one that the scene has is like it.
+    #[error("{source}; did you mean `{nearest}`?")]
+    Misspelt {
+        /// The field that the scene has.
+        nearest: String,
+        /// The mistakes of the scene with the parameter.
+        source: CompileError,
+    },
     /// The screen or the touch source is not bundled, or has mistakes.
     #[error(transparent)]
     Profile(#[from] ProfileError),
@@ -164,25 +172,35 @@ impl Cell {
 
     /// Compiles the cell's scene, without playing it. A mistake in one cell is in those of all people.
     pub fn check(&self) -> Result<(), CellError> {
-        self.compiled().map(drop)
+        self.compiled().map(drop).map_err(|error| match error {
+            CellError::Compile(source) => match self.nearest_field(&source) {
+                Some(nearest) => CellError::Misspelt { nearest, source },
+                None => source.into(),
+            },
+            error => error,
+        })
+    }
+
+    /// The field of the scene that is most like a parameter which the scene does not know.
+    fn nearest_field(&self, error: &CompileError) -> Option<String> {
+        let unknown = error.diagnostics.iter().filter_map(|mistake| match &mistake.message {
+            Message::Mistake(Mistake::Field(FieldMistake::UnknownField { field, .. })) => Some(field.as_str()),
+            _ => None,
+        });
+        let unknown: Vec<&str> = unknown.collect();
+        let is_unknown = |path: &&String| path.rsplit('.').next().is_some_and(|field| unknown.contains(&field));
+        self.parameters.keys().filter(is_unknown).find_map(|path| nearest_field(&self.text, path))
     }
 
     fn compiled(&self) -> Result<(Scene, WorldOptions, Program), CellError> {
-        let (scene, world, board) = (self.scene()?, self.world()?, Board::SIMULATOR);
+        let mut scene = Scene::parse(&self.text, &self.scene, &self.files)?;
+        if let Some(screen) = &self.screen {
+            scene = scene.with_screen(screen.read()?, &screen.name);
+        }
+        let world = WorldOptions { ideal: self.ideal, touch: Some(self.touch.read()?), ..WorldOptions::default() };
+        let board = Board::SIMULATOR;
         let program = compile(&scene, &board.limits, board.tick_hz)?;
         Ok((scene, world, program))
-    }
-
-    fn scene(&self) -> Result<Scene, CellError> {
-        let scene = Scene::parse(&self.text, &self.scene, &self.files)?;
-        match &self.screen {
-            Some(screen) => Ok(scene.with_screen(screen.read()?, &screen.name)),
-            None => Ok(scene),
-        }
-    }
-
-    fn world(&self) -> Result<WorldOptions, CellError> {
-        Ok(WorldOptions { ideal: self.ideal, touch: Some(self.touch.read()?), ..WorldOptions::default() })
     }
 
     fn result(&self, score: &Score, voltage_v_rms: f64) -> CellResult {

@@ -1,6 +1,6 @@
 //! A field of a scene by its path, and the values that a sweep gives it.
 
-use frixel_scene::brief;
+use frixel_scene::{Nearest, brief};
 use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item, TableLike};
 
@@ -85,6 +85,21 @@ pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> 
         PlanError(format!("parameter \"{}\": {reason}", brief(path)))
     })?;
     Ok(document.to_string())
+}
+
+/// The field of a scene whose name is nearest to that at a path, in the same table.
+pub(super) fn nearest_field(text: &str, path: &str) -> Option<String> {
+    let document: DocumentMut = text.parse().ok()?;
+    let (tables, field) = path.rsplit_once('.')?;
+    let mut item = document.as_item();
+    for name in tables.split('.') {
+        item = match name.parse::<usize>() {
+            Ok(number) => item.get(number.checked_sub(1)?)?,
+            Err(_) => item.get(name)?,
+        };
+    }
+    let others = item.as_table_like()?.iter().map(|(name, _)| name).filter(|name| *name != field);
+    Nearest::new(field, others).suggestion
 }
 
 /// The part of a path that does not fit.

@@ -108,7 +108,7 @@ fn named<P: Profile, E>(
 }
 
 fn slowest_touch() -> Vec<String> {
-    vec!["100".to_owned()]
+    vec![TouchConfig::REALISTIC_NAME.to_owned()]
 }
 
 fn strokes() -> u64 {
@@ -210,13 +210,14 @@ impl Plan {
                 return refuse(field, count.to_string(), &format!("a number from 1 to {}", TrialPlan::COUNT_MAX));
             }
         }
-        if !(0.25..=600.0).contains(&self.seconds) {
-            return refuse("seconds", self.seconds.to_string(), "a duration from 0.25 to 600");
-        }
-        if let Some(speed) =
-            self.median_speed_mm_per_s.filter(|speed| !TrialPlan::MEDIAN_SPEEDS_MM_PER_S.contains(speed))
-        {
-            return refuse("median_speed_mm_per_s", speed.to_string(), "a speed from 1 to 1000");
+        for (field, what, found, range) in [
+            ("seconds", "duration", Some(self.seconds), TrialPlan::SWEEP_SECONDS),
+            ("median_speed_mm_per_s", "speed", self.median_speed_mm_per_s, TrialPlan::MEDIAN_SPEEDS_MM_PER_S),
+        ] {
+            if let Some(found) = found.filter(|found| !range.contains(found)) {
+                let expected = format!("a {what} from {} to {}", range.start(), range.end());
+                return refuse(field, found.to_string(), &expected);
+            }
         }
         for (path, values) in &self.parameters {
             let parts = path.split('.').count();

@@ -10,7 +10,7 @@ use super::parameter::Value;
 use super::picture;
 use super::study::{Group, LayerShare, Study};
 use crate::recording::{Column, Field, Kind, RecordingError, Values, table_parquet};
-use crate::score::{interval, metric_keys};
+use crate::score::{interval, metric_keys, quoted};
 use crate::statistics::mean;
 
 /// Why the results of a study cannot be written.
@@ -26,7 +26,7 @@ pub enum StudyError {
 
 impl Study {
     /// A row for each group and layer: the share of the fingers that notice it, with its interval.
-    pub fn layers(&self) -> Vec<Column> {
+    fn layers(&self) -> Vec<Column> {
         let of_group = |group| Group::layers(group).into_iter().map(move |share| (group, share));
         let rows: Vec<(&Group, LayerShare)> = self.groups.iter().flat_map(of_group).collect();
         let shares = || rows.iter().map(|(_, share)| share);
@@ -58,7 +58,7 @@ impl Study {
     }
 
     /// A row for each finger and layer.
-    pub fn fingers(&self) -> Vec<Column> {
+    fn fingers(&self) -> Vec<Column> {
         let mut rows = Vec::new();
         for group in &self.groups {
             for finger in &group.fingers {
@@ -87,7 +87,7 @@ impl Study {
     }
 
     /// A row for each group and number of a score: its mean over the fingers, with the interval.
-    pub fn numbers(&self) -> Vec<Column> {
+    fn numbers(&self) -> Vec<Column> {
         let mut rows = Vec::new();
         for group in &self.groups {
             for key in metric_keys() {
@@ -111,12 +111,6 @@ impl Study {
         columns
     }
 
-    /// The picture: the share of the fingers that notice each layer, over each field that has several numbers and over
-    /// the moisture of their skin, as SVG.
-    pub fn svg(&self) -> Result<String, StudyError> {
-        Ok(picture::svg(self)?)
-    }
-
     /// The files of the results, each with its name: tables as CSV and as Parquet, and the picture. Equal results give
     /// equal bytes.
     pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>, StudyError> {
@@ -128,7 +122,7 @@ impl Study {
             ("layers.parquet", table_parquet(&layers)?),
             ("fingers.parquet", table_parquet(&fingers)?),
             ("numbers.parquet", table_parquet(&numbers)?),
-            ("sweep.svg", self.svg()?.into_bytes()),
+            ("sweep.svg", picture::svg(self)?.into_bytes()),
         ])
     }
 
@@ -208,11 +202,6 @@ fn csv(columns: &[Column]) -> String {
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join(","));
     }
     text
-}
-
-/// A cell of a CSV file.
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
 }
 
 #[cfg(test)]

@@ -210,8 +210,8 @@ mod tests {
     /// The rows of a table, and how it was understood.
     fn read(text: &[u8]) -> Result<(Vec<Numbers>, String), TableError> {
         let mut table = Table::new(text)?;
-        let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::Volts))?;
-        let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::Newtons))?;
+        let voltage = table.need(Column::new("voltage_v_rms", "volts rms").converted(Unit::VOLTS))?;
+        let friction = table.need(Column::new("friction_n", "newtons").converted(Unit::NEWTONS))?;
         let mut rows = Vec::new();
         while let Some(row) = table.next_row()? {
             row.check_length()?;

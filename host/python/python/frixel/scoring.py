@@ -148,7 +148,7 @@ def score(
         None if speed is None else number("median_speed_mm_per_s", speed, *_frixel.MEDIAN_SPEEDS_MM_PER_S),
         None if touch is None else TouchSource.of(touch),
         flag("ideal", ideal),
-        0 if jobs is None else whole("jobs", jobs, 1, _frixel.COUNT_MAX),
+        0 if jobs is None else whole("jobs", jobs, 1, _frixel.JOBS_MAX),
     )
     summary, words, plays, layers = _frixel.score_scene(scene.compiled, settings)
     return Score(json.loads(summary), words, {"score.csv": plays, "score-layers.csv": layers})

@@ -10,7 +10,7 @@ use anyhow::{Result, anyhow, bail};
 use chrono::Utc;
 use clap::{Args, ValueEnum};
 use frixel_files::{Inputs, OutputFile, commit_all};
-use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings, Summary};
+use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings};
 use frixel_lab::table::Reading;
 use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile};
@@ -97,15 +97,15 @@ impl Fitted {
 
     fn json(&self) -> serde_json::Value {
         match self {
-            Self::Contact(fit) => serde_json::json!(Summary::from(&**fit)),
+            Self::Contact(fit) => fit.json(),
             Self::Empirical(fit) => fit.json(),
         }
     }
 
     fn division(&self) -> Division {
         match self {
-            Self::Contact(fit) => fit.division,
-            Self::Empirical(fit) => fit.division,
+            Self::Contact(fit) => fit.data.division,
+            Self::Empirical(fit) => fit.data.division,
         }
     }
 }

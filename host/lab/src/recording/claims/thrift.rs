@@ -45,7 +45,7 @@ impl<'b> Thrift<'b> {
     ) -> Result<(), RecordingError> {
         self.depth += 1;
         if self.depth > DEPTH_MAX {
-            return Err(RecordingError::Nested);
+            return Err(RecordingError::nested());
         }
         let mut id = 0;
         loop {
@@ -109,7 +109,7 @@ impl<'b> Thrift<'b> {
     fn deeper(&mut self, skip: impl FnOnce(&mut Self) -> Result<(), RecordingError>) -> Result<(), RecordingError> {
         self.depth += 1;
         if self.depth > DEPTH_MAX {
-            return Err(RecordingError::Nested);
+            return Err(RecordingError::nested());
         }
         skip(self)?;
         self.depth -= 1;

@@ -27,8 +27,6 @@ STIMULUS_HZ = 160.0
 FADE_S = 0.2
 """Fade of the stimulus at either end of a stroke, s, so that no click gives it away."""
 SAMPLE_HZ = 4000
-REACH = 0.999
-"""Part of the friction at the highest voltage that the scene uses, so that rounding stays within reach."""
 GAP_UM = 10.0
 EXAMPLE = _frixel.EXAMPLE_FINGER
 """The parameters of the bundled finger `example`, which a perceptual profile keeps."""
@@ -53,7 +51,7 @@ def scene(voltage_v_rms: float) -> Scene:
             "screen": {"width_mm": 120.0, "height_mm": 80.0, "coating": [{"thickness_um": 1.0, "permittivity": 1.0}]},
             "finger": {**EXAMPLE, "skin_gap_um": GAP_UM - 1.0},
             "drive": {"voltage_max_v_rms": voltage_v_rms},
-            "layer": [{"kind": "stream", "above": "natural", "low_n": 0.0, "high_n": REACH * high_n}],
+            "layer": [{"kind": "stream", "above": "natural", "low_n": 0.0, "high_n": _frixel.REACH * high_n}],
         }
     )
 

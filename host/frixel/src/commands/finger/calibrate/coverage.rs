@@ -220,7 +220,7 @@ impl Tally {
 }
 
 fn outcome(person: u64, fit: &Fit) -> Outcome {
-    let truth_n = steady_electric_friction_n(&Person::drawn(person), fit.normal_load_n);
+    let truth_n = steady_electric_friction_n(&Person::drawn(person), fit.data.normal_load_n);
     let Estimate { value, low, high } = fit.electric_friction_n;
     let (error, half_width) = (value / truth_n - 1.0, (high - low) / (2.0 * truth_n));
     Outcome { person, error, half_width, covers: (low..=high).contains(&truth_n) }
