@@ -44,11 +44,11 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         Err(SimulationError::Refused(_)) if program.is_draft() => {
             return Ok(json!({ "ok": false, "problems": problems }));
         }
-        costs => costs.map_err(HostError::Simulation)?,
+        costs => costs?,
     };
     let judgement = if is_judged {
         let world = WorldOptions { touch: Some(touch), ..WorldOptions::default() };
-        judge(&program, &config, &world, Advice::Sought, TO_THE_END).map_err(HostError::Simulation)?
+        judge(&program, &config, &world, Advice::Sought, TO_THE_END)?
     } else {
         Judgement::default()
     };

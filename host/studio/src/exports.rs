@@ -11,9 +11,12 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use frixel_felt::judge::{WEBER_FRACTION, weber_steps};
+use frixel_felt::recorder::OFF_BELOW_V_RMS;
 use frixel_hil_sim::Board;
+use frixel_scene::check_picture;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::message::telemetry_period_ticks;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::additions;
@@ -101,8 +104,8 @@ pub extern "C" fn layouts() -> i32 {
     })
 }
 
-/// Constants of perception for the page: `weberStepsPerE`, Weber steps of a change by a factor of e, and `weberStep`, a
-/// sentence that explains a Weber step.
+/// Constants of perception for the page: `weberStepsPerE`, Weber steps of a change by a factor of e; `weberStep`, a
+/// sentence that explains a Weber step; and `offBelowVRms`, the voltage below which the output counts as off.
 #[unsafe(no_mangle)]
 pub extern "C" fn perception() -> i32 {
     respond(|| {
@@ -111,7 +114,7 @@ pub extern "C" fn perception() -> i32 {
         let step = format!(
             "A Weber step is a factor of {factor:.2}, about the smallest change of friction that a finger feels."
         );
-        Ok(json!({ "weberStepsPerE": steps_per_e, "weberStep": step }))
+        Ok(json!({ "weberStepsPerE": steps_per_e, "weberStep": step, "offBelowVRms": OFF_BELOW_V_RMS }))
     })
 }
 
@@ -119,6 +122,15 @@ pub extern "C" fn perception() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn used_files() -> i32 {
     respond(|| crate::used_files(&request()?))
+}
+
+/// Checks the input, which is a picture. The answer has `aspect`, its width over its height as it is played.
+#[unsafe(no_mangle)]
+pub extern "C" fn picture() -> i32 {
+    respond(|| {
+        let (width, height) = INPUT.with_borrow(|bytes| check_picture(bytes)).map_err(HostError::Picture)?;
+        Ok(json!({ "aspect": width as f64 / height as f64 }))
+    })
 }
 
 /// The values of the input, which is a text of TOML, and the lines of its layers: `layer_text.rs` says how.
@@ -162,35 +174,26 @@ pub extern "C" fn seeded_hash() -> i32 {
 pub extern "C" fn simulator_start(seed: u32) -> i32 {
     respond(|| {
         SIMULATOR.set(Some(Simulator::new(seed.into())?));
-        Ok(json!({}))
+        Ok(())
     })
 }
 
 /// Compiles a scene and plays it on the simulator.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_play() -> i32 {
-    with_simulator(|simulator| {
-        simulator.play(&request()?)?;
-        Ok(json!({}))
-    })
+    with_simulator(|simulator| simulator.play(&request()?))
 }
 
 /// Stops the simulator.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_stop() -> i32 {
-    with_simulator(|simulator| {
-        simulator.stop()?;
-        Ok(json!({}))
-    })
+    with_simulator(|simulator| Ok(simulator.stop()?))
 }
 
 /// Plays the simulator's scene again after a stop.
 #[unsafe(no_mangle)]
 pub extern "C" fn simulator_resume() -> i32 {
-    with_simulator(|simulator| {
-        simulator.resume()?;
-        Ok(json!({}))
-    })
+    with_simulator(|simulator| Ok(simulator.resume()?))
 }
 
 /// Carries out a control line, which is the input as text, on the simulator. The answer has `notice`: a sentence on
@@ -270,37 +273,25 @@ pub extern "C" fn host_disconnect() {
 /// Compiles a scene for the board and loads it. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_load() -> i32 {
-    with_host(|host| {
-        host::load(host, &request()?)?;
-        Ok(json!({}))
-    })
+    with_host(|host| host::load(host, &request()?))
 }
 
 /// Arms the board and plays the loaded scene. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_play() -> i32 {
-    with_host(|host| {
-        host.arm_and_play()?;
-        Ok(json!({}))
-    })
+    with_host(|host| Ok(host.arm_and_play()?))
 }
 
 /// Stops and disarms the board. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_stop() -> i32 {
-    with_host(|host| {
-        host.stop()?;
-        Ok(json!({}))
-    })
+    with_host(|host| Ok(host.stop()?))
 }
 
 /// Clears a latched fault whose cause is gone. Suspends.
 #[unsafe(no_mangle)]
 pub extern "C" fn host_clear_fault() -> i32 {
-    with_host(|host| {
-        host.clear_fault()?;
-        Ok(json!({}))
-    })
+    with_host(|host| Ok(host.clear_fault()?))
 }
 
 /// Carries out a control line, which is the input as text, as [`simulator_control`] does. Suspends.
@@ -344,16 +335,17 @@ fn line() -> String {
     INPUT.with_borrow(|input| String::from_utf8_lossy(input).into_owned())
 }
 
-fn with_simulator(act: impl FnOnce(&mut Simulator) -> Result<Value, HostError>) -> i32 {
+fn with_simulator<T: Serialize>(act: impl FnOnce(&mut Simulator) -> Result<T, HostError>) -> i32 {
     respond(|| SIMULATOR.with_borrow_mut(|simulator| act(simulator.as_mut().ok_or(HostError::NoBoard)?)))
 }
 
-fn with_host(act: impl FnOnce(&mut Host<LinkStream>) -> Result<Value, HostError>) -> i32 {
+fn with_host<T: Serialize>(act: impl FnOnce(&mut Host<LinkStream>) -> Result<T, HostError>) -> i32 {
     respond(|| HOST.with_borrow_mut(|host| act(host.as_mut().ok_or(HostError::NoBoard)?)))
 }
 
-fn respond(act: impl FnOnce() -> Result<Value, HostError>) -> i32 {
-    respond_bytes(|| act().map(|answer| answer.to_string().into_bytes()))
+fn respond<T: Serialize>(act: impl FnOnce() -> Result<T, HostError>) -> i32 {
+    // Plain numbers and texts always serialize.
+    respond_bytes(|| act().map(|answer| serde_json::to_vec(&answer).unwrap_or_default()))
 }
 
 fn respond_bytes(act: impl FnOnce() -> Result<Vec<u8>, HostError>) -> i32 {

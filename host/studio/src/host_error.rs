@@ -1,7 +1,6 @@
 //! Why a request of the page is refused or fails.
 
 use frixel_driver::{ControlError, DeviceError};
-use frixel_hil_sim::{StrokeError, WorldError};
 use frixel_play::{PlayError, SimulationError};
 use thiserror::Error;
 
@@ -20,15 +19,9 @@ pub enum HostError {
     /// The board, or its player, refuses a scene that the compiler accepts.
     #[error("the board does not take this scene: {0}")]
     Refused(PlayError),
-    /// The world of the simulator could not be built.
+    /// The simulated world could not be built, or the strokes that judge the scene could not be played.
     #[error(transparent)]
-    World(WorldError),
-    /// The strokes that judge the scene could not be played.
-    #[error(transparent)]
-    Simulation(SimulationError),
-    /// The world's finger could not be built.
-    #[error(transparent)]
-    Stroke(StrokeError),
+    Simulation(#[from] SimulationError),
     /// A control line has a mistake.
     #[error(transparent)]
     Control(#[from] ControlError),
@@ -41,6 +34,9 @@ pub enum HostError {
     /// A text cannot be read or edited.
     #[error(transparent)]
     Text(#[from] TextError),
+    /// A file is no picture that can be played.
+    #[error("{0}")]
+    Picture(String),
     /// There is no board.
     #[error("no board is connected: connect one, or use the simulator")]
     NoBoard,

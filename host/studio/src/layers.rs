@@ -4,119 +4,60 @@ use frixel_felt::check::feel;
 use frixel_felt::judge::{Judgement, LayerVerdict, Texture, weber_steps_text};
 use frixel_layers::{Point, Region, range};
 use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
-use serde::Serialize;
+use serde_json::{Value, json};
 
-/// A layer as it is written in a file. With `repeat`, it is several layers of the scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub(crate) struct FileLayer {
-    /// Number of the layer in messages, from 1.
-    index: usize,
-    /// Its name, or else its kind.
-    name: String,
-    /// Its kind.
-    kind: &'static str,
-    /// What a person will feel of it, or of its first copy, one sentence; empty for a layer that is not felt anywhere.
-    felt: String,
-    /// The same as numbers; `null` for a layer that is not felt anywhere.
-    perceived: Option<Perceived>,
-    /// The numbers of its layers in control lines.
-    controls: Vec<String>,
-    /// Whether they can be changed while they play.
-    is_live: bool,
-    /// Why they cannot, one sentence; empty if they can.
-    why_not_live: String,
-    /// Whether they are on when the scene begins to play.
-    starts_on: bool,
-    /// The gain in the file, and the least and the largest that a board takes.
-    gain: f64,
-    gain_min: f64,
-    gain_max: f64,
-    /// The least and the largest gain with which the drive can give what the layer asks for when it is on; `null` where
-    /// it cannot be changed, or with no gain.
-    gain_reach: Option<(f64, f64)>,
-    /// The file that it stands in, if that is not the scene.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    file: Option<String>,
-    /// First and last line of its table, from 1.
-    from: (usize, usize),
-    /// Left, top, width and height of its region, or of the picture that it shows, mm; `null` for the whole screen.
-    box_mm: Option<[f64; 4]>,
-}
-
-/// What is felt of a layer, or of its first copy.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Perceived {
-    /// Whether it is felt, as the command says it.
-    verdict: &'static str,
-    /// The friction before and after its step, N: that within it or that at its border, whichever is larger.
-    from_n: f64,
-    to_n: f64,
-    /// Size of the step in Weber steps, as the command prints it.
-    weber_steps: String,
-    /// The vibration that is felt most surely when it is slid over; `null` for a layer without one.
-    texture: Option<PerceivedTexture>,
-}
-
-/// A vibration under a sliding finger.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct PerceivedTexture {
-    verdict: &'static str,
-    speed_mm_per_s: f64,
-    frequency_hz: f64,
-    amplitude_n: f64,
-    /// The smallest amplitude that is felt at this frequency, N; `null` where none is known.
-    threshold_n: Option<f64>,
-}
-
-impl Perceived {
-    fn of(layer: &LayerVerdict) -> Self {
-        let step = layer.main_step();
-        Self {
-            verdict: layer.verdict.words(),
-            from_n: step.from_n,
-            to_n: step.to_n,
-            weber_steps: weber_steps_text(step.weber_steps.abs()),
-            texture: layer.texture.as_ref().map(PerceivedTexture::of),
-        }
-    }
-}
-
-impl PerceivedTexture {
-    fn of(texture: &Texture) -> Self {
-        let Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. } = *texture;
-        Self { verdict: verdict.words(), speed_mm_per_s, frequency_hz, amplitude_n, threshold_n }
-    }
-}
-
-/// The layers of a scene, called `entry`, that was compiled to `program`.
-pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<FileLayer> {
+/// The layers of a scene, called `entry`, that was compiled to `program`, as they are written in its files: with
+/// `repeat`, one is several layers of the scene. `Layer` in `web/engine/types.d.ts` says what each has.
+pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<Value> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
-        let live: Result<Vec<Vec<u8>>, _> = layers.iter().map(|layer| program.layers.records(layer)).collect();
-        let gain_reach = live.as_ref().ok().and_then(|records| gain_reach(program, &records.concat()));
-        FileLayer {
-            index: number,
-            name: name.unwrap_or_else(|| kind.to_owned()),
-            kind,
-            felt: perceived(number, judgement).map_or_else(String::new, feel::sentence),
-            perceived: perceived(number, judgement).map(Perceived::of),
-            controls: layers,
-            is_live: live.is_ok(),
-            why_not_live: live.err().map_or(String::new(), |error| error.to_string()),
-            starts_on,
-            gain,
-            gain_min: range::GAIN.min,
-            gain_max: range::GAIN.max,
-            gain_reach,
-            file: (file != entry).then_some(file),
-            from: lines,
-            box_mm: bounds_mm.or_else(|| outline_mm(program, number)),
+        let live = program.layers.records(&number.to_string());
+        // Of its first copy.
+        let felt = judgement.layers.iter().find(|layer| layer.layer.number().table == number);
+        let mut layer = json!({
+            "index": number,
+            "name": name.unwrap_or_else(|| kind.to_owned()),
+            "kind": kind,
+            "felt": felt.map_or_else(String::new, feel::sentence),
+            "perceived": felt.map(perceived),
+            "copies": layers.len(),
+            "isLive": live.is_ok(),
+            "startsOn": starts_on,
+            "gain": gain,
+            "gainMin": range::GAIN.min,
+            "gainMax": range::GAIN.max,
+            "gainReach": live.as_ref().ok().and_then(|records| gain_reach(program, records)),
+            "whyNotLive": live.err().map_or(String::new(), |error| error.to_string()),
+            "from": lines,
+            "boxMm": bounds_mm.or_else(|| outline_mm(program, number)),
+        });
+        if file != entry {
+            layer["file"] = file.into();
         }
+        layer
     };
     scene.layer_tables().into_iter().map(describe).collect()
+}
+
+/// What is felt of a layer, as numbers: its verdict and sizes are those that the command prints.
+fn perceived(layer: &LayerVerdict) -> Value {
+    let step = layer.main_step();
+    let texture = |Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. }: &Texture| {
+        json!({
+            "verdict": verdict.words(),
+            "speedMmPerS": speed_mm_per_s,
+            "frequencyHz": frequency_hz,
+            "amplitudeN": amplitude_n,
+            "thresholdN": threshold_n,
+        })
+    };
+    json!({
+        "verdict": layer.verdict.words(),
+        "fromN": step.from_n,
+        "toN": step.to_n,
+        "weberSteps": weber_steps_text(step.weber_steps.abs()),
+        "texture": layer.texture.as_ref().map(texture),
+    })
 }
 
 /// Left, top, width and height of the smallest rectangle around what the table with this number became, mm: the
@@ -145,11 +86,6 @@ fn corners_m(region: &Region, points: &[Point]) -> Option<[f32; 4]> {
                 .reduce(|[left, top, right, bottom], [x, y, ..]| [left.min(x), top.min(y), right.max(x), bottom.max(y)])
         }
     }
-}
-
-/// What is felt of the layer of the table with this number, or of its first copy.
-fn perceived(table: usize, judgement: &Judgement) -> Option<&LayerVerdict> {
-    judgement.layers.iter().find(|layer| layer.layer.number().table == table)
 }
 
 /// The gains in reach of some records together, once they are on and all others as the scene starts.

@@ -5,11 +5,10 @@ use std::time::Duration;
 use frixel_driver::{ByteStream, LinkClosed};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, FingerState, Point, Rig, RigConfig, RigTick, Status, Stroke};
-use frixel_play::Recorded;
+use frixel_play::{Recorded, SimulationError};
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::FeltSampler;
-use crate::host_error::HostError;
 use crate::pointer::{Finger, Pointer};
 use crate::touched::{TouchFollower, TouchedPlaces};
 
@@ -33,10 +32,10 @@ pub(crate) struct PointerStream<'a> {
 type Observer = Box<dyn FnMut(&RigTick<Status>)>;
 
 impl<'a> PointerStream<'a> {
-    pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, HostError> {
+    pub(crate) fn new(memory: &'a mut BoardMemory, config: &RigConfig, seed: u64) -> Result<Self, SimulationError> {
         // The pointer moves the finger; the world's own stroke never starts.
-        let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0).map_err(HostError::Stroke)?;
-        let rig = Rig::new(memory, config, stroke, seed).map_err(HostError::World)?;
+        let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0)?;
+        let rig = Rig::new(memory, config, stroke, seed)?;
         Ok(Self {
             felt: FeltSampler::new(rig.tick_hz()),
             rig,

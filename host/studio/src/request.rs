@@ -9,11 +9,13 @@ use serde::Deserialize;
 use thiserror::Error;
 
 /// A request of the page.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub struct Request {
     /// Name of the scene among the files.
     pub entry: String,
     /// The files, by their names relative to the scene's folder.
+    #[serde(skip)]
     pub files: BTreeMap<String, Vec<u8>>,
     /// The finger: the name of a bundled profile or the text of one; `None` for the scene's own.
     pub finger: Option<String>,
@@ -22,8 +24,10 @@ pub struct Request {
     /// The simulated touch source: the name of a bundled one or the text of one; `None` for 100 reports a second.
     pub touch: Option<String>,
     /// Whether the simulator in the page plays the scene without prediction, whatever the scene says.
+    #[serde(default)]
     pub without_prediction: bool,
     /// Numbers of the request.
+    #[serde(flatten)]
     pub numbers: Numbers,
 }
 
@@ -64,17 +68,10 @@ pub enum RequestError {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
 struct Head {
-    entry: String,
     files: Vec<FileHead>,
-    finger: Option<String>,
-    screen: Option<String>,
-    touch: Option<String>,
-    #[serde(default)]
-    without_prediction: bool,
     #[serde(flatten)]
-    numbers: Numbers,
+    request: Request,
 }
 
 #[derive(Deserialize)]
@@ -89,18 +86,17 @@ impl Request {
         let short = || RequestError::Short { found: bytes.len() };
         let (len, rest) = bytes.split_first_chunk().ok_or_else(short)?;
         let (json, mut rest) = rest.split_at_checked(u32::from_le_bytes(*len) as usize).ok_or_else(short)?;
-        let head: Head = serde_json::from_slice(json)?;
+        let Head { files: heads, request } = serde_json::from_slice(json)?;
         // Names in a scene are relative to the scene's folder.
-        let folder = head.entry.rfind('/').map_or("", |slash| head.entry.get(..=slash).unwrap_or_default());
+        let folder = request.entry.rfind('/').map_or("", |slash| request.entry.get(..=slash).unwrap_or_default());
         let mut files = BTreeMap::new();
-        for FileHead { name, len } in head.files {
+        for FileHead { name, len } in heads {
             let (content, behind) = rest.split_at_checked(len).ok_or_else(short)?;
             files.insert(name.strip_prefix(folder).unwrap_or(&name).to_owned(), content.to_owned());
             rest = behind;
         }
-        let entry = head.entry.strip_prefix(folder).unwrap_or(&head.entry).to_owned();
-        let Head { finger, screen, touch, without_prediction, numbers, .. } = head;
-        Ok(Self { entry, files, finger, screen, touch, without_prediction, numbers })
+        let entry = request.entry.strip_prefix(folder).unwrap_or(&request.entry).to_owned();
+        Ok(Self { entry, files, ..request })
     }
 
     /// The bytes of the scene file.

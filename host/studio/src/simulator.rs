@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use frixel_driver::DeviceError;
 use frixel_hil_sim::{BoardMemory, RigConfig, TouchConfig, WorldOptions};
-use frixel_play::PlayError;
+use frixel_play::{PlayError, SimulationError};
 use frixel_wire::fault::{Fault, State};
 
 use crate::felt::{FeltSamples, TICKS_PER_SAMPLE};
@@ -53,11 +53,6 @@ impl Simulator {
         stream_mut(&mut self.host).state()
     }
 
-    /// Whether the finger is on the screen.
-    pub(crate) fn is_touched(&mut self) -> bool {
-        stream_mut(&mut self.host).is_touched()
-    }
-
     /// The board's host, for control lines.
     pub(crate) fn host_mut(&mut self) -> &mut Host<PointerStream<'static>> {
         &mut self.host
@@ -71,7 +66,7 @@ impl Simulator {
         let touch = touch_source(request)?;
         if touch != self.touch {
             let world = stream_mut(&mut self.host).world_mut();
-            world.set_touch_source(&touch).map_err(|error| HostError::World(error.into()))?;
+            world.set_touch_source(&touch).map_err(|error| SimulationError::World(error.into()))?;
             self.touch = touch;
         }
         host::replace(&mut self.host, program)?;
@@ -129,7 +124,7 @@ impl Simulator {
     /// What was felt since the last call, and the board's state, as the bytes that `board.js` reads.
     pub(crate) fn take_frame(&mut self) -> Vec<u8> {
         let (state, fault) = self.state();
-        let is_touched = self.is_touched();
+        let is_touched = stream_mut(&mut self.host).is_touched();
         let tick = self.tick();
         let FeltSamples { first_tick, columns, sound_n } = self.take_felt();
         let head: [f64; FRAME_HEAD.len()] = [

@@ -12,7 +12,7 @@ const panel = (page) => page.locator(".layer-panel");
 const note = (page) => panel(page).locator("[role=status]").textContent();
 test("Add puts a layer where there is room, selected, in one step of undo", async () => {
   const page = await openEditing(EMPTY);
-  assert.match(await panel(page).textContent(), /^This scene has no layer yet: add one\./);
+  assert.match(await panel(page).innerText(), /^This scene has no layer yet: add one\./);
   const texts = [EMPTY];
   const places = new Set();
   for (const name of ["stripes", "button"]) {
@@ -68,7 +68,7 @@ test("a picture of one's own begins a scene and is added to one, by its aspect",
   await begin("notes.txt", Buffer.from("x"));
   await assertSays(page, /^notes\.txt: expected /);
   await begin("bad.jpg", Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 1, 2, 3]));
-  await assertSays(page, /^bad\.jpg: this picture cannot be read$/);
+  await assertSays(page, /^bad\.jpg: it is damaged /);
   await begin("my wood.jpg", wood);
   await page.waitForFunction(() => studioPage.editor.text.includes('picture = "my wood.jpg"'));
   await plays(page);
@@ -158,7 +158,7 @@ test("layers are taken out one after the other, faster than any check", async ()
   await page.mouse.click(...(await onPage(page, 100, 50)));
   await press(page, "Delete");
   assert.doesNotMatch(await textOf(page), /\[\[layer\]\]/);
-  assert.match(await panel(page).textContent(), /^This scene has no layer yet/);
+  assert.match(await panel(page).innerText(), /^This scene has no layer yet/);
   await press(page, "Control+z", "Control+z");
   assert.equal(await textOf(page), PLATES);
   await plays(page);

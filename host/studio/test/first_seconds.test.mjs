@@ -66,9 +66,9 @@ test("the columns stand before the engine is ready, and where they are then, als
     globalThis.widths = [];
     const look = () => {
       const card = document.querySelector(".map-card");
-      const numbers = document.querySelectorAll("#numbers div").length;
-      // The scripts have begun once the numbers are there.
-      if (card && numbers > 0) {
+      const hasRoom = document.querySelector(".feel-grid")?.style.getPropertyValue("--map-width");
+      // The scripts have begun once the map has its room.
+      if (card && hasRoom) {
         const said = document.getElementById("map-hint").textContent;
         widths.push({ width: Math.round(card.getBoundingClientRect().width), isStarting: said === "starting…" });
       }

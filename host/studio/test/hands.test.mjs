@@ -115,7 +115,7 @@ test("a click selects the smallest layer and keeps it; a double click, and Alt, 
   assert.equal(names.at(-1), "right");
   await press(page, "Escape");
   assert.equal(await page.locator(".layer-box[aria-current=true]").count(), 0);
-  assert.equal(await page.locator(".layer-panel input").count(), 0);
+  assert.equal(await page.locator(".layer-panel input:visible").count(), 0);
 });
 
 test("a press takes a smaller layer that lies on the one that is selected, and drags it", async () => {

@@ -142,12 +142,7 @@ test("lines that a board without prediction jumps over are said to be missed", a
   await writeScene(page, LINES);
   await page.waitForFunction(() => studioPage.map.frictionAt(20.5, 40) - studioPage.map.frictionAt(25, 40) > 0.1);
   await page.click("#open-lag");
-  await page.evaluate(async () => {
-    await slide(10, 115, 40, 200);
-    await wait(150);
-    lift(115, 40);
-    await wait(300);
-  });
+  await page.evaluate(() => stroke(10, 115, 40, 200));
   const words = await page.innerText("#lag-missed");
   // Its mean is of the others alone.
   const [, felt, lines, missed] = /^, at (\d+) of (\d+) lines: it missed (\d+)$/.exec(words) ?? [];

@@ -91,11 +91,7 @@ test("values in the legend are whole, and neither they nor a tab change the size
   for (const size of WINDOWS.filter(([width]) => width > PHONE_MAX_PX)) {
     await resize(page, size);
     const before = await boxes(page, parts);
-    await page.evaluate(async () => {
-      await slide(15, 60, 40, 90);
-      await wait(100);
-      lift(60, 40);
-    });
+    await page.evaluate(() => stroke(15, 60, 40, 90));
     const { left, top, width, height } = await page.evaluate(boxOf, "#scope .u-over");
     // Somewhere on the stroke, which is in the last second of the chart.
     const hasValues = () => /felt.*mN/.test(document.querySelector(".u-legend").textContent);

@@ -112,6 +112,13 @@ function addHelpers() {
     }
   };
   globalThis.lift = (xMm, yMm) => send("pointerup", xMm, yMm);
+  /** Slides and lifts. Resolves when all of it has been felt. */
+  globalThis.stroke = async (fromMm, toMm, yMm, speedMmPerS) => {
+    await slide(fromMm, toMm, yMm, speedMmPerS);
+    await wait(150);
+    lift(toMm, yMm);
+    await wait(200);
+  };
   const listeners = new Set();
   const { samples } = studioPage;
   const add = samples.add.bind(samples);
@@ -143,16 +150,13 @@ export const SPEED_MM_PER_S = 80;
 
 /** Slides over the map along x, lifts, and returns the samples of this stroke. */
 export function wholeStroke(page, yMm) {
-  const stroke = async ([yMm, speedMmPerS]) => {
+  const slid = async ([yMm, speedMmPerS]) => {
     const { samples } = studioPage;
     const beginS = samples.nowS;
-    await slide(15, 105, yMm, speedMmPerS);
-    await wait(150);
-    lift(105, yMm);
-    await wait(200);
+    await stroke(15, 105, yMm, speedMmPerS);
     return samples.since(beginS);
   };
-  return page.evaluate(stroke, [yMm, SPEED_MM_PER_S]);
+  return page.evaluate(slid, [yMm, SPEED_MM_PER_S]);
 }
 
 /** The page is there, plays, and says this. */

@@ -22,12 +22,7 @@ test("Lag leaves the board where it is, and its numbers move nothing when they c
   const open = await placesOf();
   assert.deepEqual(open.slice(0, 2), [options, map]);
   const rows = await page.locator(".lag-by").evaluateAll((all) => all.map((each) => each.offsetTop));
-  await page.evaluate(async () => {
-    await slide(15, 105, 40, 150);
-    await wait(100);
-    lift(105, 40);
-    await wait(300);
-  });
+  await page.evaluate(() => stroke(15, 105, 40, 150));
   assert.match(await page.innerText("#lag-reported"), /mm$/);
   // The longest words.
   await page.evaluate(() => (document.getElementById("lag-missed").textContent = ", at 5 of 18 lines: it missed 13"));

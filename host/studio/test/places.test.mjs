@@ -92,7 +92,7 @@ async function changeAll(more) {
     const before = await check(text);
     for (const layer of before.layers) {
       const at = toml.layerAt(layer.from[0]);
-      const place = placeOf(toml, at, layer, before.screen, false);
+      const place = placeOf(toml, at, layer, before.screen);
       const about = { name: `${name} ${layer.name}`, isWhole: place.isWholeScreen };
       found.push({ ...about, what: "place", expected: list(bounds(place.box, place.copies)), actual: layer.boxMm });
       const make = async (what, changes, expected) => {
@@ -141,7 +141,7 @@ async function placeIn({ text, boxMm, kind = "constant", byMm = 0 }) {
   const [{ TomlText }, { placeOf }] = [await module("toml_text"), await module("place")];
   const toml = new TomlText(text);
   const { move, whyNotMoved, whyNotResized, box, copies } =
-    placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 }, false);
+    placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 });
   return { whyNotMoved, whyNotResized, box, copies, moved: whyNotMoved ? text : toml.with(move(byMm, 0)) };
 }
 
@@ -175,23 +175,27 @@ test("pixels stay whole, unless one has a part or a step is finer", async () => 
   assert.equal(await xAfter("30.5", 0.4), "31.5");
 });
 
-/** Runs in the page: why a layer of a file with an include cannot be moved, with these other files. */
-async function whyNotMoved(more) {
+/** Runs in the page: why the last layer of a file with an include cannot be moved, with these other files. */
+async function whyNotMoved([fields, more]) {
   const { EditedLayers } = await import(await studio.moduleUrl("page/edited_layers.js"));
-  const text = 'version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\nkind = "constant"\n';
+  const text = `version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\n${fields}\n`;
   const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
-  const layer = { index: 0, name: "constant", kind: "constant", from: [3, 1], boxMm: [10, 10, 20, 20] };
-  const bytes = Object.entries(more).map(([name, content]) => [name, new TextEncoder().encode(content)]);
-  const files = { "a.toml": text, ...Object.fromEntries(bytes) };
-  layers.take({ layers: [layer], screen: { widthMm: 120, heightMm: 80 } }, files, "a.toml");
-  return layers.all[0].place.whyNotMoved;
+  const files = { "a.toml": text, ...more };
+  const check = await studioPage.engine.compile(files, "a.toml", {});
+  layers.take(check, files, "a.toml");
+  return layers.all.at(-1).place.whyNotMoved;
 }
 
 test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
-  const why = (more) => page.evaluate(whyNotMoved, more);
-  const defaults = "[defaults.region]\nx_mm = 10\n";
-  assert.match(await why({ "parts/b.toml": defaults }), /defaults. of an included file/);
-  const further = { "parts/b.toml": 'include = ["../c.toml"]\n', "c.toml": defaults };
-  assert.match(await why(further), /defaults. of an included file/);
-  assert.doesNotMatch(await why({ "parts/b.toml": "", "c.toml": defaults }), /defaults. of an included file/);
+  const why = (fields, more) => page.evaluate(whyNotMoved, [fields, more]);
+  const constant = 'kind = "constant"\nfriction_fraction = 0.5';
+  const region = "version = 1\n[defaults]\nregion = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }\n";
+  assert.match(await why(constant, { "parts/b.toml": region }), /defaults. of an included file/);
+  const further = { "parts/b.toml": 'version = 1\ninclude = ["../c.toml"]\n', "c.toml": region };
+  assert.match(await why(constant, further), /defaults. of an included file/);
+  const edge = 'kind = "edge"\nwidth_mm = 3\nridge_fraction = 0.4\nx_mm = 50';
+  const middle = { "parts/b.toml": "version = 1\n[defaults]\ny_mm = 40\n" };
+  assert.match(await why(edge, middle), /defaults. of an included file/);
+  assert.equal(await why(`${edge}\ny_mm = 30`, middle), "");
+  assert.match(await why(constant, { "parts/b.toml": "version = 1\n" }), /covers the whole screen/);
 });

@@ -26,10 +26,7 @@ async function open({ size = { width: 1440, height: 900 }, scheme = "light", isF
 /** Slides twice to the right, and leaves the finger down. */
 async function slide(page, yMm = 44) {
   await page.evaluate(async (yMm) => {
-    await slide(15, 105, yMm - 12, 90);
-    await wait(120);
-    lift(105, yMm - 12);
-    await wait(150);
+    await stroke(15, 105, yMm - 12, 90);
     await slide(20, 88, yMm, 90);
     // The way is simulated a little later than it was made.
     await wait(30);

@@ -96,6 +96,11 @@ async function reopen(page, name) {
   await page.click(`#open article:has(h3:text-is("${name}")) >> text=Open`);
 }
 
+/** A PNG picture of one pixel. */
+const PIXEL = Buffer.from(
+  "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==", "base64",
+);
+
 const GRATING_OF_3_MM = WHOLE_SCREEN_GRATING.replace("wavelength_mm = 2", "wavelength_mm = 3");
 
 test("what was changed is in Open after New, the gallery, a link and a closed tab, one entry for each", async () => {
@@ -203,8 +208,7 @@ test("a page that closes while a scene is being opened does not lose the one bef
 
 test("a piece of work with more files than a zip may have comes back", async () => {
   const page = await openStudio();
-  const [begin, end] = [Buffer.from([0x89, 0x50, 0x4e, 0x47]), Buffer.from("IEND")];
-  const picture = (number) => ({ name: `p${number}.png`, mimeType: "image/png", buffer: Buffer.concat([begin, end]) });
+  const picture = (number) => ({ name: `p${number}.png`, mimeType: "image/png", buffer: PIXEL });
   await page.setInputFiles("#files", Array.from({ length: 101 }, (_, number) => picture(number)));
   await page.locator("#notice", { hasText: "p100.png" }).waitFor();
   await page.click("#save");
@@ -254,9 +258,7 @@ test("a press on the map ends a replay and is felt", async () => {
     while (replay.textContent !== "Stop replay") await wait(20);
     await wait(300);
     const beginS = samples.nowS;
-    await slide(20, 60, 20, 80);
-    lift(60, 20);
-    await wait(200);
+    await stroke(20, 60, 20, 80);
     return samples.since(beginS).yMm.filter((mm) => Math.abs(mm - 20) < 2).length;
   };
   const felt = await page.evaluate(pressOnReplay);

@@ -78,20 +78,20 @@ fn layers_have_their_files_lines_and_numbers() {
     assert_eq!(answer["ok"], true, "{answer}");
     let layers = answer["layers"].as_array().unwrap();
     let part = |layer: usize, names: [&str; 7]| names.map(|name| layers[layer][name].clone());
-    let names = ["index", "name", "file", "from", "controls", "gain", "boxMm"];
+    let names = ["index", "name", "file", "from", "copies", "gain", "boxMm"];
     let key = [
         json!(1),
         json!("key"),
         json!("parts/keys.toml"),
         json!([3, 15]),
-        json!(["1.1", "1.2", "1.3"]),
+        json!(3),
         json!(0.5),
         json!([5.0, 6.0, 27.0, 8.0]),
     ];
     assert_eq!(part(0, names), key);
     assert_eq!(
         part(1, names),
-        [json!(2), json!("constant"), json!(null), json!([4, 6]), json!(["2"]), json!(1.0), json!(null)]
+        [json!(2), json!("constant"), json!(null), json!([4, 6]), json!(1), json!(1.0), json!(null)]
     );
     assert_eq!((&layers[0]["isLive"], &layers[1]["isLive"]), (&json!(true), &json!(false)));
     assert_eq!((&layers[0]["gainMin"], &layers[0]["gainMax"]), (&json!(-100.0), &json!(100.0)));
@@ -116,7 +116,29 @@ fn the_used_files_are_those_that_the_compiler_reads() {
     assert_eq!(names(&whole)["isWhole"], false, "what mine.toml would name is not known");
     let finger = include_str!("../../../scenes/fingers/dry.toml");
     let whole = request(scene, &[("parts/keys.toml", keys), ("mine.toml", finger)]);
-    assert_eq!(names(&whole), json!({ "isWhole": true, "names": ["mine.toml", "parts/keys.toml", "wood.jpg"] }));
+    let all = json!(["mine.toml", "parts/keys.toml", "wood.jpg"]);
+    assert_eq!(names(&whole), json!({ "isWhole": true, "names": all, "kind": "scene" }));
+}
+
+#[test]
+fn a_text_is_what_its_reader_knows() {
+    let kind = |text: &str| used_files(&request(text, &[])).unwrap()["kind"].clone();
+    for request in gallery::requests(Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap() {
+        assert_eq!(used_files(&request).unwrap()["kind"], "scene", "{}", request.entry);
+    }
+    assert_eq!(kind(include_str!("../../../scenes/fingers/dry.toml")), "finger");
+    let mistaken =
+        "width_mm = 120\nheight_mm = 0\nvoltage_max_v_rms = 150\n[[coating]]\nthickness_um = 1\npermittivity = 3\n";
+    for (text, expected) in [
+        ("reports_per_s = 0\nlatency_ms = 8\n", "touch"),
+        (mistaken, "screen"),
+        ("version = 1\n[screen]\nwidth_mm = 150\nheight_mm = 60\n[drive]\na = 1\nb = 2\nc = 3\n", "scene"),
+        ("version = 1\ninclude = [\"a.toml\", \"b.toml\", \"c.toml\", \"d.toml\"]\n", "scene"),
+        ("# nothing yet\n", "scene"),
+        ("width_mm = \n", "scene"),
+    ] {
+        assert_eq!(kind(text), expected, "{text}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ import { followLinks, makeBar, openLink } from "./page/bar.js";
 import { Board } from "./page/board.js";
 import { fingerNames, sceneText, schema } from "./page/bundled.js";
 import { Compare } from "./page/compare.js";
+import { followCloses } from "./page/dialogs.js";
 import { byId, element, sentenceOf } from "./page/dom.js";
 import { Drawer } from "./page/drawer.js";
 import { Editor } from "./page/editor.js";
@@ -58,6 +59,7 @@ async function start() {
   engine.onFailure = ({ error }) =>
     notify(`The studio has failed: ${error}. Save the scene, then reload the page; a board disarms itself.`);
   followPresses();
+  followCloses();
   guardSliders();
   const parts = await makeParts(engine, laid);
   const scene = new OpenScene(parts);
@@ -67,7 +69,7 @@ async function start() {
   showWhatIsFelt(parts);
   takeScenes(parts, scene);
   followLinks(scene);
-  const last = await scene.last();
+  const last = await scene.autosave.last();
   const first = { name: FIRST_SCENE, text: await sceneText(FIRST_SCENE), files: [] };
   await scene.open(last ?? first).catch(async (error) => {
     if (!last) throw error;
@@ -144,7 +146,7 @@ function makeControls({ engine, project, editor, map, finger, scope, compare, gh
   makeView({ map, finger, scope, engine });
   compare.onChange = () => {
     // Outlines and numbers would say which version is felt.
-    hands.setEditing(false);
+    hands.mode.set(false);
     if (compare.isRunning) attempt(() => engine.endReplay());
     map.draw();
     ghost.wake();
@@ -208,7 +210,7 @@ function showWhatPlays(parts, scene) {
     // While a hand moves layers, the next map is about to come.
     if (player.isHeld) return;
     const { opened } = project;
-    map.thumbnail().then((thumbnail) => project.opened === opened && scene.show(thumbnail));
+    map.thumbnail().then((thumbnail) => project.opened === opened && scene.autosave.show(thumbnail));
   };
   player.onFailure = (sentence) => {
     map.markStale("older");
@@ -282,19 +284,20 @@ function takeScenes({ engine, project, editor, gallery, hands }, scene) {
   gallery.onScene = (name, text) => scene.open({ name, text, files: [] });
   const begin = new NewScene(engine);
   begin.onScene = (name, text) => hands.editNext(() => scene.open({ name, text, files: [] }));
-  begin.onPicture = () => attempt(() => beginWithPicture(scene, hands, project));
+  begin.onPicture = () => attempt(() => beginWithPicture(engine, scene, hands, project));
   hands.onPicture = () =>
     attempt(async () => {
       if (!hands.canEdit()) return;
-      const picture = await choosePicture();
+      const picture = await choosePicture(engine);
       if (picture) hands.addPicture(await scene.takePicture(picture), picture.aspect);
     });
   hands.onAdd = (add) => attempt(() => scene.add(add));
   scene.onAppend = () => hands.selectLastAfterCheck();
   gallery.onLayer = (text) => scene.append(text);
-  const incoming = new Incoming(async (files, entry) =>
-    engine.usedFiles(files ?? (await project.filesFor(editor.text)), entry ?? project.entry),
-  );
+  const incoming = new Incoming(engine, async () => {
+    const { names } = await engine.usedFiles(await project.filesFor(editor.text), project.entry);
+    return names;
+  });
   incoming.onFiles = (found) => scene.take(found);
 }
 

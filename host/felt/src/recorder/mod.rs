@@ -29,7 +29,7 @@ pub use listener::PlayListener;
 use marker::Markers;
 pub use marker::{MarkedEvent, Marker};
 pub use observation::Observation;
-pub use rows::{FeltRow, FlagNames};
+pub use rows::{FeltRow, FlagNames, OFF_BELOW_V_RMS};
 use rows::{Frictions, RowMaker};
 use stream::Stream;
 use turning::Turning;

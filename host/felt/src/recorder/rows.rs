@@ -6,6 +6,9 @@ use frixel_wire::fault::Flags;
 
 use super::Observation;
 
+/// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
+pub const OFF_BELOW_V_RMS: f64 = 1.0;
+
 /// A row of `felt.csv`. An unknown value is `None`, an empty cell. Frictions are totals, averaged over the row's ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FeltRow {

@@ -1,10 +1,8 @@
 //! Spans of consecutive rows of a play, for pictures.
 
-use frixel_felt::recorder::FeltRow;
+use frixel_felt::recorder::{FeltRow, OFF_BELOW_V_RMS};
 use frixel_wire::fault::Flags;
 
-/// Below this voltage the output counts as off, V rms: on the example finger it adds some micronewtons.
-const OFF_BELOW_V_RMS: f64 = 1.0;
 /// Part of a span's rows from which on the span counts as off. In a long play, the moments at which the finger turns
 /// are a smaller part; in a play of up to ten minutes, a pause of a tenth of a second is a larger one.
 const OFF_PART_MIN: f64 = 0.1;

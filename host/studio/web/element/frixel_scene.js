@@ -8,7 +8,7 @@ import { carriedFiles } from "../page/bundled.js";
 import { adoptStyle, element, forgetColours, sentenceOf } from "../page/dom.js";
 import { Finger } from "../page/finger.js";
 import { FrictionMap, mapSizePx } from "../page/map.js";
-import { isPlayable } from "../page/player.js";
+import { DRAFT, isPlayable } from "../page/player.js";
 import { Samples } from "../page/samples.js";
 import { Scope } from "../page/scope.js";
 
@@ -243,7 +243,7 @@ class FrixelScene extends HTMLElement {
     this.#reach = compiled;
     map.show(drawn, compiled);
     this.#line.className = "line fine";
-    this.#line.textContent = compiled.isDraft ? `${entry}: draft, clamped; a board refuses it` : entry;
+    this.#line.textContent = compiled.isDraft ? `${entry}: ${DRAFT}` : entry;
     this.dispatchEvent(new CustomEvent("ready", { detail: compiled }));
     if (playing === this) {
       playing = undefined;

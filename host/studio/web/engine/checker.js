@@ -16,6 +16,7 @@ serve({
   check: ({ scene }) => checker.call("check", requestOf(scene)),
   compile: ({ scene }) => checker.call("compile", requestOf(scene)),
   usedFiles: ({ scene }) => checker.call("used_files", requestOf(scene)),
+  picture: ({ bytes }) => checker.call("picture", bytes),
   seeded: ({ scene }) => checker.call("seeded_hash", requestOf(scene)),
 
   map({ scene }) {

@@ -48,7 +48,8 @@ export class Engine {
    * @type {{ worker: WorkerClient<T.FromChecker>, start: Promise<void> } | undefined}
    */
   #judge;
-  #endCheck = () => {};
+  /** Ends the check under way, if there is one. */
+  endCheck = () => {};
   /**
    * The line to the board outside of the page, if there is one.
    * @type {T.Line | null}
@@ -198,7 +199,7 @@ export class Engine {
     const { worker, start } = this.#judge;
     return new Promise((resolve, reject) => {
       let isUnderWay = true;
-      this.#endCheck = () => {
+      this.endCheck = () => {
         if (!isUnderWay) return;
         worker.terminate("the check was ended");
         this.#judge = undefined;
@@ -207,11 +208,6 @@ export class Engine {
       const judged = start.then(() => worker.ask({ type: "check", scene: { files, entry, ...profiles } }));
       judged.finally(() => (isUnderWay = false)).then(resolve, reject);
     });
-  }
-
-  /** Ends the check under way, if there is one. */
-  endCheck() {
-    this.#endCheck();
   }
 
   #newJudge() {
@@ -237,6 +233,14 @@ export class Engine {
    */
   usedFiles(files, entry) {
     return this.#checker.ask({ type: "usedFiles", scene: { files, entry } });
+  }
+
+  /**
+   * Reads a picture as the compiler does, and throws where it cannot be played.
+   * @param {Uint8Array<ArrayBuffer>} bytes
+   */
+  picture(bytes) {
+    return this.#checker.ask({ type: "picture", bytes });
   }
 
   /**

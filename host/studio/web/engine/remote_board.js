@@ -173,7 +173,8 @@ class RemoteBoard {
     this.state = state;
     this.#fault = fault;
     this.report();
-    if (telemetry.length > 0) tell({ type: "frame", frame: frameOf(telemetry, this.tickHz) });
+    if (telemetry.length === 0) return;
+    tell({ type: "frame", frame: frameOf(telemetry, this.tickHz, this.#instance.layouts.frameColumns) });
   }
 
   report() {

@@ -2,36 +2,28 @@
 // @ts-check
 "use strict";
 
-/** @typedef {"xMm" | "yMm" | "speedMmPerS" | "referenceN" | "voltageV"} Told The columns that a board tells. */
-/** @typedef {Record<Told | "tick", number> & { isTouched: boolean }} Telemetry */
+/** @typedef {{ tick: number, isTouched: boolean } & { [Name in T.Column]?: number }} Telemetry */
 
 /**
- * Telemetry as a frame of samples. The felt friction and the true place of the finger are unknown to a board.
+ * Telemetry as a frame of samples with these columns. What a board does not tell is not-a-number.
  * @param {Telemetry[]} telemetry
  * @param {number} tickHz
+ * @param {string[]} columns
  * @returns {T.WorkerFrame}
  */
-function frameOf(telemetry, tickHz) {
-  const column = (/** @type {Told} */ name) => Float32Array.from(telemetry, (sample) => sample[name]);
-  const unknown = () => new Float32Array(telemetry.length).fill(NaN);
+function frameOf(telemetry, tickHz, columns) {
   const [first, second] = telemetry;
+  const last = telemetry[telemetry.length - 1];
+  const values = /** @type {T.Column[]} */ (columns).map((name) =>
+    Float32Array.from(telemetry, (sample) => sample[name] ?? NaN),
+  );
   return {
+    .../** @type {T.Columns} */ (named(columns, values)),
     firstTick: first.tick,
-    tick: telemetry[telemetry.length - 1].tick,
+    tick: last.tick,
     ticksPerSample: second ? second.tick - first.tick : 1,
     tickHz,
-    xMm: column("xMm"),
-    yMm: column("yMm"),
-    speedMmPerS: column("speedMmPerS"),
-    referenceN: column("referenceN"),
-    feltN: unknown(),
-    voltageV: column("voltageV"),
-    predictedXMm: unknown(),
-    predictedYMm: unknown(),
-    reportedXMm: unknown(),
-    reportedYMm: unknown(),
-    contactRadiusMm: unknown(),
-    contact: telemetry[telemetry.length - 1].isTouched,
+    contact: last.isTouched,
     delayMs: 0,
     slowness: 1,
     simulated: false,

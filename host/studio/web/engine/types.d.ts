@@ -25,7 +25,7 @@ export type Problem = {
   column?: number;
   endLine?: number;
   endColumn?: number;
-  help?: string;
+  help?: string | null;
 };
 
 /** What is felt of a layer: its verdict in words, its largest step of friction, and its surest vibration. */
@@ -61,8 +61,8 @@ export type Layer = {
   gainMax: number;
   /** The gains with which the drive can give all that the layer asks for; null where it is not live, or with none. */
   gainReach: [number, number] | null;
-  /** Names of its copies in control lines. */
-  controls: string[];
+  /** How many layers of the scene it is. */
+  copies: number;
   file?: string;
   /** First and last line. */
   from: [number, number];
@@ -85,6 +85,9 @@ export type Checked = Reach & {
 };
 export type Mistaken = { ok: false; isDraft?: false; report?: undefined; problems: Problem[] };
 export type Check = ({ ok: boolean; problems: Problem[] } & Checked) | Mistaken;
+
+/** The files that the compiler reads for a text, and what the text is. */
+export type UsedFiles = { names: string[]; isWhole: boolean; kind: "scene" | keyof Profiles };
 
 export type FrictionField = MapSize & {
   /** Of each pixel, row after row from the top left. */
@@ -149,7 +152,8 @@ export type Questions = {
   time: { asked: { epochMs: number }; answer: Nothing };
   check: { asked: { scene: Request }; answer: Check };
   compile: { asked: { scene: Request }; answer: Check };
-  usedFiles: { asked: { scene: Request }; answer: { names: string[]; isWhole: boolean } };
+  usedFiles: { asked: { scene: Request }; answer: UsedFiles };
+  picture: { asked: { bytes: Uint8Array<ArrayBuffer> }; answer: { aspect: number } };
   map: { asked: { scene: Request }; answer: FrictionField };
   seeded: { asked: { scene: Request }; answer: { hash: string } };
   speed: { asked: { scene: Request; stretches: number; stretchMs: number }; answer: { timesRealTime: number } };

@@ -126,13 +126,17 @@ export class Autosave {
    * @param {Omit<OpenWork, "id">} work
    */
   #begin({ isEdited, changedMs }) {
-    clock.cancel(this.#timer);
-    this.#timer = undefined;
+    this.#stopTimer();
     this.#id = newId();
     this.isEdited = isEdited;
     this.#changedMs = changedMs;
     this.#picture = null;
     this.#problem = undefined;
+  }
+
+  #stopTimer() {
+    clock.cancel(this.#timer);
+    this.#timer = undefined;
   }
 
   /** @param {string} id */
@@ -141,8 +145,7 @@ export class Autosave {
   }
 
   async #forget() {
-    clock.cancel(this.#timer);
-    this.#timer = undefined;
+    this.#stopTimer();
     await this.#works.delete(this.#id).catch(() => {});
   }
 
@@ -157,8 +160,7 @@ export class Autosave {
   }
 
   async #keep() {
-    clock.cancel(this.#timer);
-    this.#timer = undefined;
+    this.#stopTimer();
     const project = this.#current();
     try {
       await this.#works.put({ ...this.state, name: project.name, zip: zipOf(project), picture: this.#picture });

@@ -20,7 +20,7 @@ import { fragmentIn, isLink, linkOf, sceneOfFragment, whoCanOpen } from "./share
 /** @param {Parts & { scene: OpenScene }} parts */
 export function makeBar({ scene, gallery, works, editor, engine, project }) {
   const dialog = new Open(works, () => byId("files").click());
-  dialog.onWork = async (id) => scene.open(await scene.work(id));
+  dialog.onWork = async (id) => scene.open(await scene.autosave.work(id));
   dialog.onLink = (fragment) => scene.open(sceneOfFragment(fragment));
   makeMenu();
   byId("open-gallery").onclick = () => attempt(() => gallery.open());

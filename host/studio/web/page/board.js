@@ -2,8 +2,7 @@
 // @ts-check
 
 import { clock } from "../clock.js";
-import { fillDialog } from "./dialogs.js";
-import { byId, element } from "./dom.js";
+import { byId } from "./dom.js";
 import { attempt, notify } from "./notices.js";
 
 /** @import { Engine } from "../engine/engine.js" */
@@ -22,16 +21,11 @@ const WHY_NOT_ARMED = {
   mistaken: "The scene has mistakes: mend them, then arm.",
   failed: "The board does not have the scene that is shown.",
 };
-const WHAT_A_BOARD_IS =
-  "A board is a NUCLEO-G474RE or a Raspberry Pi Pico 2 with frixel's firmware, an amplifier and a screen with an " +
-  "electrode: docs/board/first-board.md of the frixel repository is the way there. What this scene asks of it stands " +
-  "under “What a board needs for it”, in the tab “What is felt”.";
 /** @type {Record<BoardState, string>} */
 const STATE_WORDS = { active: "playing", armed: "armed", disarmed: "disarmed", faulted: "faulted" };
 
 export class Board {
   #engine;
-  #dialog = byId("board-dialog");
   /** @type {State["link"]} */
   #link = "simulator";
   /**
@@ -55,6 +49,8 @@ export class Board {
     this.#show(engine.state);
     byId("board").textContent = "Simulator: starting…";
     byId("open-board").onclick = () => this.#open();
+    byId("use-simulator").onclick = () => attempt(() => this.#simulate());
+    byId("use-serial").onclick = () => attempt(() => this.#connect());
     byId("arm").onclick = () => attempt(() => engine.arm());
     byId("clear-fault").onclick = () => attempt(() => engine.clearFault());
     byId("stop").onclick = () => attempt(() => (byId("stop").dataset.stopped ? engine.resume() : engine.stop()));
@@ -120,47 +116,22 @@ export class Board {
   }
 
   #open() {
-    const serial = async () => {
-      const port = await chosenPort();
-      if (port) await this.#engine.connectSerial(port);
-      return port !== undefined;
-    };
     const hasSerial = "serial" in navigator;
-    const whySerial = hasSerial ? "over Web Serial" : "this browser has no Web Serial: Chromium and Firefox have it";
-    const choices = [
-      this.#choice("Simulator", () => this.#engine.simulate(), "the same firmware, in this page"),
-      this.#choice("Board on a USB port…", hasSerial && serial, whySerial),
-    ];
-    fillDialog(
-      this.#dialog,
-      "Board",
-      [],
-      element(
-        "p",
-        {},
-        "A board with an electrode drives hundreds of volts. It plays only after you press Arm here and hold the " +
-          "switch on the board. It is disarmed when this page is hidden or closed, and before a foreign scene opens.",
-      ),
-      ...choices,
-      element("p", { className: "fine" }, WHAT_A_BOARD_IS),
-    );
-    this.#dialog.showModal();
+    byId("use-serial").disabled = !hasSerial;
+    if (!hasSerial) byId("why-serial").textContent = "this browser has no Web Serial: Chromium and Firefox have it";
+    byId("board-dialog").showModal();
   }
 
-  /**
-   * A board to connect; `connect` is false where the browser cannot, and resolves to false where nothing was chosen.
-   * @param {string} words
-   * @param {false | (() => Promise<boolean | void>)} connect
-   * @param {string} why
-   */
-  #choice(words, connect, why) {
-    const button = element("button", { disabled: !connect }, words);
-    button.onclick = () =>
-      attempt(async () => {
-        this.#dialog.close();
-        if (connect && (await connect()) !== false) this.onBoard();
-      });
-    return element("p", { className: "row" }, button, element("span", { className: "soft" }, why));
+  async #connect() {
+    const port = await chosenPort();
+    if (!port) return;
+    await this.#engine.connectSerial(port);
+    this.onBoard();
+  }
+
+  async #simulate() {
+    await this.#engine.simulate();
+    this.onBoard();
   }
 }
 

@@ -99,17 +99,12 @@ function values(schema, place, name) {
   const { all, outer, present } = tableAt(schema, place);
   const property = all[name];
   if (!property) return [];
-  const words = property.words.map((word) => ({
+  if (property.type === "boolean") return ["true", "false"].map((label) => ({ label, type: "keyword" }));
+  return property.words.map((word) => ({
     label: JSON.stringify(word),
     type: "enum",
     ...(name === "kind" && withNeeds(schema, outer, { ...present, kind: String(word) })),
   }));
-  return property.type === "boolean"
-    ? [
-        { label: "true", type: "keyword" },
-        { label: "false", type: "keyword" },
-      ]
-    : words;
 }
 
 /**

@@ -20,7 +20,7 @@ export function byId(id) {
 /**
  * What `element` takes for an element: properties, listeners (`onclick`) and attributes (`aria-label`).
  * @template Made
- * @typedef {{ [Name in keyof Made]?: Made[Name] | number } & { [name: `aria-${string}`]: string | boolean }} Properties
+ * @typedef {{ [Name in keyof Made]?: Made[Name] | number } & { [name: `${"aria" | "data"}-${string}`]: string | boolean }} Properties
  */
 
 /**

@@ -2,7 +2,7 @@
 // @ts-check
 
 import { bounds, placeOf } from "./place.js";
-import { TomlText } from "./toml_text.js";
+import { SHARED_LINE, TomlText } from "./toml_text.js";
 
 /** @import { Checked, Files, Layer, Screen } from "../engine/types" */
 /** @import { Editor } from "./editor.js" */
@@ -24,11 +24,6 @@ export class EditedLayers {
    * @type {Map<string | undefined, string>}
    */
   #texts = new Map();
-  /**
-   * Files that include one with defaults.
-   * @type {Set<string | undefined>}
-   */
-  #withOtherDefaults = new Set();
 
   /** @param {Editor} editor */
   constructor(editor) {
@@ -87,8 +82,6 @@ export class EditedLayers {
     this.#texts = texts;
     this.screen = screen;
     const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text)]));
-    const withDefaults = [...parsed].filter(([file, toml]) => includesDefaults(toml, file ?? entry, files));
-    this.#withOtherDefaults = new Set(withDefaults.map(([file]) => file));
     this.all = layers.map((layer) => {
       const toml = parsed.get(layer.file);
       return this.#describe(layer, toml, toml?.layerAt(layer.from[0]));
@@ -105,32 +98,41 @@ export class EditedLayers {
   #describe(layer, toml, at) {
     const { file, index } = layer;
     if (toml && at !== undefined) {
-      const place = placeOf(toml, at, layer, this.screen, this.#withOtherDefaults.has(file));
-      return { key: `${file ?? ""} ${at}`, layer, at, toml, place };
+      return { key: `${file ?? ""} ${at}`, layer, at, toml, place: placeOf(toml, at, layer, this.screen) };
     }
     const why = toml
-      ? "This layer shares its line with another: change it in the text."
+      ? SHARED_LINE
       : `This layer comes from ${file}: open that file together with the scene to change it here.`;
     return { key: `number ${index}`, layer, place: fixed(layer, this.screen, why) };
   }
 
   /**
-   * The text of a file has changed by a hand: its layers are read anew, the changed one with its new box where only a
-   * check knows that.
-   * @param {EditedLayer} changed
-   * @param {Box} [box] Of its first copy.
+   * The text of a file has changed by a hand: its layers are read anew. Returns the text.
+   * @param {string | undefined} file
+   * @param {(each: EditedLayer, at: number) => [now: Layer, at: number]} now What a layer of the file is now.
    */
-  reread(changed, box) {
-    const { file } = changed.layer;
-    const text = this.#editor.textOf(file);
-    if (text === undefined) return;
+  #follow(file, now) {
+    const text = this.#editor.textOf(file) ?? "";
     this.#texts.set(file, text);
     const toml = new TomlText(text);
     this.all = this.all.map((each) => {
       if (each.layer.file !== file || each.at === undefined) return each;
-      const all = box && each.key === changed.key ? bounds(box, each.place.copies) : undefined;
-      const boxMm = all ? /** @type {Layer["boxMm"]} */ ([all.x, all.y, all.width, all.height]) : each.layer.boxMm;
-      return this.#describe({ ...each.layer, boxMm }, toml, each.at);
+      const [layer, at] = now(each, each.at);
+      return this.#describe(layer, toml, at);
+    });
+    return toml;
+  }
+
+  /**
+   * A hand has changed a layer, which has this new box where only a check knows that.
+   * @param {EditedLayer} changed
+   * @param {Box} [box] Of its first copy.
+   */
+  reread(changed, box) {
+    this.#follow(changed.layer.file, ({ key, layer, place }, at) => {
+      if (!box || key !== changed.key) return [layer, at];
+      const { x, y, width, height } = bounds(box, place.copies);
+      return [{ ...layer, boxMm: [x, y, width, height] }, at];
     });
   }
 
@@ -139,11 +141,9 @@ export class EditedLayers {
    * @param {EditedLayer} edited
    * @param {string} name
    */
-  rename(edited, name) {
-    this.reread(edited);
-    const renamed = (/** @type {EditedLayer} */ each) => ({ ...each, layer: { ...each.layer, name } });
-    this.all = this.all.map((each) => (each.key === edited.key ? renamed(each) : each));
-    return this.find(edited.key);
+  rename({ key: renamed, layer: { file } }, name) {
+    this.#follow(file, ({ key, layer }, at) => [key === renamed ? { ...layer, name } : layer, at]);
+    return this.find(renamed);
   }
 
   /**
@@ -167,10 +167,10 @@ export class EditedLayers {
    */
   insert(layer, at) {
     const { file } = layer;
-    const { toml, others } = this.#renumbered(file, at, 1);
+    const toml = this.#follow(file, (each, before) => [each.layer, before < at ? before : before + 1]);
     const made = this.#describe(layer, toml, at);
-    const before = others.findIndex((each) => each.layer.file === file && each.at === at - 1);
-    this.all = others.toSpliced(before < 0 ? others.length : before + 1, 0, made);
+    const below = this.all.findIndex((each) => each.layer.file === file && each.at === at - 1);
+    this.all = this.all.toSpliced(below < 0 ? this.all.length : below + 1, 0, made);
     return made;
   }
 
@@ -179,25 +179,9 @@ export class EditedLayers {
    * @param {EditedLayer} edited
    */
   remove(edited) {
+    const { layer, at = 0 } = edited;
     this.all = this.all.filter((each) => each !== edited);
-    this.all = this.#renumbered(edited.layer.file, edited.at ?? 0, -1).others;
-  }
-
-  /**
-   * The layers of the text that a file has now, in which those from a number on have another one.
-   * @param {string | undefined} file
-   * @param {number} first
-   * @param {1 | -1} by
-   */
-  #renumbered(file, first, by) {
-    const text = this.#editor.textOf(file) ?? "";
-    this.#texts.set(file, text);
-    const toml = new TomlText(text);
-    const others = this.all.map((each) => {
-      if (each.layer.file !== file || each.at === undefined) return each;
-      return this.#describe(each.layer, toml, each.at < first ? each.at : each.at + by);
-    });
-    return { toml, others };
+    this.#follow(layer.file, (each, before) => [each.layer, before < at ? before : before - 1]);
   }
 
   /**
@@ -245,38 +229,6 @@ function unnamedWordsOf(edited) {
 function countOf(edited) {
   const layers = edited?.toml?.value(["layer"]);
   return Array.isArray(layers) ? layers.length : 0;
-}
-
-/**
- * @param {TomlText} toml
- * @param {string} file Its name.
- * @param {Files} files
- * @returns {boolean}
- */
-function includesDefaults(toml, file, files) {
-  const names = toml.value(["include"]);
-  return Array.isArray(names) && names.some((each) => {
-    const name = joined(file, String(each));
-    const content = files[name];
-    if (content === undefined) return false;
-    const included = new TomlText(typeof content === "string" ? content : new TextDecoder().decode(content));
-    return included.value(["defaults"]) !== undefined || includesDefaults(included, name, files);
-  });
-}
-
-/**
- * The path of a file that another one calls `name`.
- * @param {string} file
- * @param {string} name
- */
-function joined(file, name) {
-  /** @type {string[]} */
-  const parts = [];
-  for (const part of [...file.split("/").slice(0, -1), ...name.split("/")]) {
-    if (part === ".." && parts.length > 0 && parts[parts.length - 1] !== "..") parts.pop();
-    else if (part !== "" && part !== ".") parts.push(part);
-  }
-  return parts.join("/");
 }
 
 /**

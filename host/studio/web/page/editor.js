@@ -168,30 +168,6 @@ export class Editor {
   }
 
   /**
-   * Inserts text behind a line (0: before the first) of a file and shows it.
-   * @param {string | undefined} file
-   * @param {number} number
-   * @param {string} text
-   */
-  insertAfterLine(file, number, text) {
-    this.onReveal();
-    this.show(file);
-    const { doc } = this.#view.state;
-    const at = number === 0 ? 0 : doc.line(Math.min(number, doc.lines)).to;
-    this.#replace(at, at, number === 0 ? `${text}\n` : `\n${text}`);
-  }
-
-  /**
-   * Whether the layer table in these lines has them to itself, so that a line can be added.
-   * @param {string | undefined} file
-   * @param {[number, number]} lines
-   */
-  isTable(file, [first]) {
-    const doc = this.versionOf(file);
-    return doc !== undefined && first <= doc.lines && /^\s*\[\[/.test(doc.line(first).text);
-  }
-
-  /**
    * The text of a file, if it is here.
    * @param {string | undefined} file
    */
@@ -215,6 +191,18 @@ export class Editor {
   hold(file) {
     this.show(file);
     return new HeldChange(this.#view, () => this.onHistory());
+  }
+
+  /**
+   * Gives a file this text, in one step of undo.
+   * @param {string | undefined} file
+   * @param {string} text
+   */
+  change(file, text) {
+    const held = this.hold(file);
+    const isMade = held.make(text);
+    held.end();
+    if (!isMade) throw new Error("The text has no room for this layer.");
   }
 
   /** @param {string} text */

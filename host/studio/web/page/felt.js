@@ -8,6 +8,8 @@ import { perception } from "./toml_text.js";
 /** @import { Checked, Layer, Perceived } from "../engine/types" */
 /** @typedef {{ naturalN: number, reachN: number }} Scale Friction of bare glass, and the most that can be reached, N. */
 
+/** @typedef {{ name: string, text: string }} Line Of a report. */
+
 /** Lines of a report that say what a scene as a whole is like, by their names, in the order in which they are shown. */
 const REMARKS = ["draft", "warning", "out of reach", "alike", "note"];
 /** Lines on single layers, which the table has. */
@@ -34,8 +36,8 @@ function chip(verdict, sentence) {
 }
 
 /** What the numbers of layers are. */
-export function stepLine() {
-  return element("p", { className: "fine step-words" }, `${STEP} ${perception().weberStep}`);
+export function stepWords() {
+  return `${STEP} ${perception().weberStep}`;
 }
 
 /** @param {number} newtons */
@@ -78,26 +80,18 @@ export function showFelt({ layers, report, ...scale }) {
   const named = report.map(([name, text]) => ({ name, text }));
   const remarks = named.filter(({ name, text }) => REMARKS.includes(name) && text !== "nothing");
   remarks.sort((one, other) => REMARKS.indexOf(one.name) - REMARKS.indexOf(other.name));
-  const head = ["Layer", "Felt?", "Friction, up to", "Step", "Texture"].map((words) => element("th", { scope: "col" }, words));
-  const table = element(
-    "table",
-    { className: "felt-table" },
-    element("thead", {}, element("tr", {}, ...head)),
-    element("tbody", {}, ...layers.map((layer) => row(layer, scale))),
-  );
   const board = named.filter(({ name }) => ![...REMARKS, ...OF_LAYERS].includes(name));
-  const felt = byId("felt");
-  const open = [...felt.querySelectorAll("details[open] summary")].map(({ textContent }) => textContent);
-  felt.replaceChildren(
-    layers.length > 0 ? table : element("p", { className: "soft" }, "This scene has no layer yet."),
-    ...(layers.length > 0 ? [stepLine()] : []),
-    ...remarks.map(({ name, text }) => element("p", { className: "remark" }, element("b", {}, name), ` ${text}`)),
-    fold("What a board needs for it", pairs(board)),
-    fold("In words, as frixel check says it", pairs(named.filter(({ name }) => OF_LAYERS.includes(name)))),
-  );
-  // What a person has unfolded stays so.
-  for (const details of felt.querySelectorAll("details"))
-    details.open = open.includes(details.querySelector("summary")?.textContent ?? "");
+  const words = named.filter(({ name }) => OF_LAYERS.includes(name));
+  const hasLayers = layers.length > 0;
+  byId("no-layers").hidden = hasLayers;
+  byId("felt-layers").hidden = !hasLayers;
+  byId("felt-layers").tBodies[0].replaceChildren(...layers.map((layer) => row(layer, scale)));
+  byId("felt-step").textContent = hasLayers ? stepWords() : "";
+  const remark = (/** @type {Line} */ { name, text }) =>
+    element("p", { className: "remark" }, element("b", {}, name), ` ${text}`);
+  byId("remarks").replaceChildren(...remarks.map(remark));
+  byId("board-needs").replaceChildren(...board.map(pair));
+  byId("felt-words").replaceChildren(...words.map(pair));
 }
 
 /**
@@ -115,19 +109,8 @@ function row({ name, perceived, felt }, scale) {
   return element("tr", {}, title, cells[0], friction, cells[1], cells[2]);
 }
 
-/**
- * @param {string} summary
- * @param {HTMLElement} content
- */
-function fold(summary, content) {
-  return element("details", { className: "report" }, element("summary", {}, summary), content);
-}
-
-/** @param {{ name: string, text: string }[]} lines */
-function pairs(lines) {
-  const row = (/** @type {{ name: string, text: string }} */ { name, text }) =>
-    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text, meaning(name)));
-  const meaning = (/** @type {string} */ name) =>
-    element("span", { className: "soft" }, MEANINGS[name] ? `: ${MEANINGS[name]}` : "");
-  return element("table", { className: "felt-table" }, element("tbody", {}, ...lines.map(row)));
+/** @param {Line} line */
+function pair({ name, text }) {
+  const meaning = element("span", { className: "soft" }, MEANINGS[name] ? `: ${MEANINGS[name]}` : "");
+  return element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, text, meaning));
 }

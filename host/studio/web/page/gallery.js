@@ -2,7 +2,7 @@
 // @ts-check
 
 import { sceneNames, sceneText } from "./bundled.js";
-import { choiceButton, fillDialog } from "./dialogs.js";
+import { choiceButton } from "./dialogs.js";
 import { byId, element, shortName } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
@@ -15,7 +15,6 @@ const LONG_SIDE_PX = 300;
 
 export class Gallery {
   #engine;
-  #dialog = byId("gallery");
   #isFilled = false;
   /**
    * A whole scene is chosen: `onScene(name, text)`.
@@ -34,13 +33,11 @@ export class Gallery {
   }
 
   async open() {
-    this.#dialog.showModal();
+    byId("gallery").showModal();
     if (this.#isFilled) return;
     this.#isFilled = true;
     const cards = sceneNames().map((name) => ({ name, ...emptyCard(name) }));
-    const scenes = element("div", { className: "scenes" }, ...cards.map(({ card }) => card));
-    const words = element("p", { className: "soft" }, "Open a scene, or take single layers over into yours.");
-    fillDialog(this.#dialog, "Gallery", [], words, scenes);
+    byId("gallery-scenes").append(...cards.map(({ card }) => card));
     for (const { name, card, canvas } of cards) await this.#fill(card, canvas, name);
   }
 
@@ -52,7 +49,7 @@ export class Gallery {
   async #fill(card, canvas, name) {
     const text = await sceneText(name);
     const found = await drawScene(this.#engine, text, canvas, LONG_SIDE_PX);
-    const open = choiceButton(this.#dialog, `Open ${titleOf(name)}`, () => this.onScene(name, text));
+    const open = choiceButton(`Open ${titleOf(name)}`, () => this.onScene(name, text));
     canvas.onclick = () => open.click();
     const list = element("ul", {}, ...this.#layers(text, found));
     const layers = element("details", {}, element("summary", {}, "Layers"), list);

@@ -45,12 +45,12 @@ export class HandDrag {
   #larger;
 
   /**
-   * @param {HTMLElement} surface
    * @param {Hands} hands
    * @param {EditedLayers} layers
    * @param {FrictionMap} map
    */
-  constructor(surface, hands, layers, map) {
+  constructor(hands, layers, map) {
+    const { surface } = hands.view;
     this.#surface = surface;
     this.#hands = hands;
     this.#layers = layers;
@@ -63,7 +63,7 @@ export class HandDrag {
       // The first of both clicks may have selected it.
       if (this.#before[0] === hands.selected?.key) this.#takeLarger(event);
     });
-    surface.addEventListener("pointerleave", () => hands.mark(undefined));
+    surface.addEventListener("pointerleave", () => hands.view.boxes.mark(undefined));
     // On a tablet that is turned the finger is elsewhere on the map: the drag is taken back, and goes no further.
     addEventListener("resize", () => {
       if (!this.#press) return;
@@ -124,7 +124,7 @@ export class HandDrag {
   #move(event) {
     const press = this.#press;
     if (!press) {
-      this.#hands.mark(this.#under(this.#at(event))[0]);
+      this.#hands.view.boxes.mark(this.#under(this.#at(event))[0]?.key);
       return;
     }
     if (event.pointerId !== press.pointerId) return;

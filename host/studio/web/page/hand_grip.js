@@ -5,6 +5,7 @@ import { withSide } from "./hand_drag.js";
 
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
 /** @import { Editor } from "./editor.js" */
+/** @import { Hands } from "./hands.js" */
 /** @import { HeldChange } from "./held_change.js" */
 /** @import { Box, Side } from "./place.js" */
 /** @import { Player } from "./player.js" */
@@ -22,20 +23,15 @@ export class HandGrip {
    * @type {{ held: HeldChange, from: EditedLayer } | undefined}
    */
   #held;
-  /** The layer that a hand takes hold of. @type {() => EditedLayer | undefined} */
-  selected = () => undefined;
-  /** The layers have changed. */
-  onChange = () => {};
-  /** A hand has let go. */
-  onEnd = () => {};
-  /** Says a sentence at the layer; "" once what it said is over. @type {(sentence: string) => void} */
-  onSay = () => {};
+  #hands;
 
   /**
    * @param {{ editor: Editor, player: Player }} parts
    * @param {EditedLayers} layers
+   * @param {Hands} hands
    */
-  constructor({ editor, player }, layers) {
+  constructor({ editor, player }, layers, hands) {
+    this.#hands = hands;
     this.#editor = editor;
     this.#player = player;
     this.#layers = layers;
@@ -57,10 +53,10 @@ export class HandGrip {
   begin() {
     if (this.#held && this.isHolding) return this.#held.from;
     if (this.#held) this.end();
-    const from = this.selected();
+    const from = this.#hands.selected;
     if (!from || from.at === undefined) return undefined;
     if (!this.#layers.isCurrent) {
-      this.onSay(TEXT_CHANGED);
+      this.#hands.say(TEXT_CHANGED);
       return undefined;
     }
     this.#held = { from, held: this.#editor.hold(from.layer.file) };
@@ -80,8 +76,8 @@ export class HandGrip {
     this.#player.hold();
     this.#held.held.make(text);
     this.#layers.reread(from, box);
-    this.onSay("");
-    this.onChange();
+    this.#hands.say("");
+    this.#hands.draw(false);
   }
 
   /** Takes back what this hand has changed since it began. */
@@ -97,7 +93,7 @@ export class HandGrip {
     this.#held = undefined;
     grip.held.end();
     if (this.#player.isHeld) this.#player.release(this.#editor.text);
-    this.onEnd();
+    this.#hands.takeHeldBack();
   }
 
   /**
@@ -109,7 +105,7 @@ export class HandGrip {
     const place = this.begin()?.place;
     if (!place) return;
     if (place.whyNotMoved) {
-      this.onSay(place.whyNotMoved);
+      this.#hands.say(place.whyNotMoved);
       return;
     }
     const { x, y, width, height } = place.box;
@@ -120,7 +116,7 @@ export class HandGrip {
   resize(box) {
     const place = this.begin()?.place;
     if (!place) return;
-    if (place.whyNotResized) this.onSay(place.whyNotResized);
+    if (place.whyNotResized) this.#hands.say(place.whyNotResized);
     else this.change(place.resize(box), box);
   }
 

@@ -2,15 +2,9 @@
 // @ts-check
 
 import { ARROWS } from "./arrows.js";
-import { element } from "./dom.js";
 
 /** @import { Hands } from "./hands.js" */
 
-/** What is read out at each layer. */
-const KEYS_HELP =
-  "Arrow keys move it by 1 mm, with Shift by 5 mm, with Alt by 0.1 mm. Page Down: next layer, Page Up: that before. " +
-  "Enter or Tab: its numbers. Ctrl+Enter: its text. F2: its name. Ctrl+D doubles it. " +
-  "Delete removes it. Escape deselects it.";
 /** Keys that select another layer; with Ctrl, the arrow keys do so, too. @type {Record<string, 1 | -1>} */
 const OTHERS = { PageDown: 1, PageUp: -1 };
 /** @type {Record<string, 1 | -1>} */
@@ -23,19 +17,13 @@ const FIELDS = ".cm-editor, textarea, select, input:not([type=range], [type=chec
 
 export class HandKeys {
   #hands;
-  #panel;
   /** How far the arrow keys have moved the layer since they are held. */
   #movedMm = [0, 0];
 
-  /**
-   * @param {HTMLElement} surface The element around the layers.
-   * @param {Hands} hands
-   * @param {HTMLElement} panel Whose fields write into the text of the scene at once.
-   */
-  constructor(surface, hands, panel) {
+  /** @param {Hands} hands */
+  constructor(hands) {
     this.#hands = hands;
-    this.#panel = panel;
-    surface.append(element("p", { id: "hands-keys", hidden: true }, KEYS_HELP));
+    const { surface } = hands.view;
     surface.addEventListener("keydown", (event) => this.#down(event));
     surface.addEventListener("keyup", ({ key }) => key in ARROWS && !hands.isPressed && hands.grip.end());
     addEventListener("keydown", (event) => this.#shortcut(event), { capture: true });
@@ -58,7 +46,7 @@ export class HandKeys {
     else if (key in ARROWS && hands.selected) {
       this.#move(ARROWS[key], altKey ? FINE_STEP_MM : shiftKey ? LARGE_STEP_MM : STEP_MM);
     } else if (altKey) return;
-    else if (key === "Enter" || key === " ") hands.focusPanel();
+    else if (key === "Enter" || key === " ") hands.view.panel.focus();
     else if (key === "F2") hands.focusName();
     else if (key === "Delete" || key === "Backspace") hands.delete();
     else if (key === "Escape") {
@@ -87,7 +75,8 @@ export class HandKeys {
   #shortcut(event) {
     const { target, ctrlKey, metaKey, altKey, shiftKey, repeat } = event;
     if (!(ctrlKey || metaKey) || altKey || !(target instanceof Element)) return;
-    const isOfScene = this.#panel.contains(target) && !target.matches(".layer-name");
+    // The fields of the panel write into the text of the scene at once.
+    const isOfScene = this.#hands.view.panel.element.contains(target) && !target.matches(".layer-name");
     if (document.querySelector("dialog[open]") || (!isOfScene && target.closest(FIELDS))) return;
     const key = event.key.toLowerCase();
     if (key === "z" || key === "y") this.#hands.undoOrRedo(key === "y" || shiftKey ? "redo" : "undo");

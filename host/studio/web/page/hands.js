@@ -6,7 +6,6 @@ import { EditedLayers } from "./edited_layers.js";
 import { HandDrag } from "./hand_drag.js";
 import { HandGrip } from "./hand_grip.js";
 import { HandKeys } from "./hand_keys.js";
-import { listenToPanel } from "./hand_panel.js";
 import { HandsView } from "./hands_view.js";
 import { LayerEdits } from "./layer_edits.js";
 import { ModeSwitch } from "./mode_switch.js";
@@ -28,9 +27,10 @@ export class Hands {
   #layers;
   #selection;
   #edits;
-  #view;
+  /** What is shown: the boxes of the layers, and the panel. */
+  view;
   #removal;
-  #mode = new ModeSwitch();
+  mode = new ModeSwitch();
   /** What moves, resizes and tunes the selected layer. */
   grip;
   /**
@@ -62,54 +62,41 @@ export class Hands {
     this.#layers = new EditedLayers(editor);
     this.#selection = new Selection(this.#layers, project);
     this.#edits = new LayerEdits(editor, this.#layers);
-    this.grip = new HandGrip(parts, this.#layers);
-    this.#view = new HandsView(map, schema);
+    this.grip = new HandGrip(parts, this.#layers, this);
+    this.view = new HandsView(map, schema, this);
     this.#removal = new Removal(editor, () => {
       // What comes back is selected again, and the keys act on it.
       this.focus(undefined);
       this.undoOrRedo("undo");
     });
-    this.#listen();
-    const { surface, panel } = this.#view;
-    new HandDrag(surface, this, this.#layers, map);
-    new HandKeys(surface, this, panel.element);
-    listenToPanel(this.#view, this);
+    this.mode.onChange = () => this.#changeMode();
+    this.view.surface.addEventListener("focusout", () => this.grip.end());
+    this.view.boxes.onFocus = (key) => this.select(key);
+    new HandDrag(this, this.#layers, map);
+    new HandKeys(this);
     const { onLayout } = map;
     map.onLayout = (area) => {
       onLayout(area);
-      this.#view.cover(area);
-      this.#draw(false);
+      this.view.cover(area);
+      this.draw(false);
     };
-  }
-
-  #listen() {
-    const { grip } = this;
-    this.#mode.onChange = () => this.#changeMode();
-    grip.selected = () => this.selected;
-    grip.onChange = () => this.#draw(false);
-    grip.onEnd = () => {
-      if (this.#heldBack) this.show(...this.#heldBack);
-    };
-    grip.onSay = (sentence) => this.say(sentence);
-    this.#view.surface.addEventListener("focusout", () => grip.end());
-    this.#view.boxes.onFocus = (key) => this.select(key);
   }
 
   get isEditing() {
-    return this.#mode.isEditing;
-  }
-
-  /** @param {boolean} isEditing */
-  setEditing(isEditing) {
-    this.#mode.set(isEditing);
+    return this.mode.isEditing;
   }
 
   #changeMode() {
     this.grip.end();
-    this.#view.surface.hidden = !this.isEditing;
+    this.view.surface.hidden = !this.isEditing;
     if (this.isEditing) this.onEdit();
     else this.#selection.key = undefined;
-    this.#draw(true);
+    this.draw(true);
+  }
+
+  /** A hand has let go of its layer. */
+  takeHeldBack() {
+    if (this.#heldBack) this.show(...this.#heldBack);
   }
 
   /**
@@ -120,13 +107,13 @@ export class Hands {
   show(check, files) {
     this.#removal.follow();
     const mistake = mistakeIn(check.problems);
-    this.#view.panel.refusal = mistake && `A board refuses this draft: ${mistake}`;
+    this.view.panel.refusal = mistake && `A board refuses this draft: ${mistake}`;
     this.#heldBack = this.grip.isHolding ? [check, files] : undefined;
     if (this.#heldBack) {
       this.#layers.feel(check.layers);
       // A mistake that the hand made is over.
-      if (this.grip.hasChanged) this.#view.panel.sayFirst(this.selected);
-      this.#draw(false);
+      if (this.grip.hasChanged) this.view.panel.sayFirst(this.selected);
+      this.draw(false);
       return;
     }
     this.#take(check, files);
@@ -137,7 +124,7 @@ export class Hands {
    * @param {Problem[]} problems
    */
   showMistakes(problems) {
-    const { panel } = this.#view;
+    const { panel } = this.view;
     panel.refusal = mistakeIn(problems);
     if (this.isEditing && panel.refusal) this.say(panel.refusal);
   }
@@ -148,18 +135,18 @@ export class Hands {
    */
   #take(check, files) {
     const { editor, project } = this.#parts;
-    this.#view.reach = check;
+    this.view.reach = check;
     const before = this.selected;
     if (!this.#layers.take(check, files, project.entry)) return;
     const { key, beginsEdit } = this.#selection.follow(before, this.isEditing);
-    if (beginsEdit && !this.isEditing) this.setEditing(true);
+    if (beginsEdit && !this.isEditing) this.mode.set(true);
     this.#reselect(key);
     // As after Add, unless a person types elsewhere meanwhile.
     if (beginsEdit && document.activeElement?.matches("body, button")) this.focus(key);
     // What was said was about the layers before.
-    this.#view.panel.sayFirst(this.selected);
+    this.view.panel.sayFirst(this.selected);
     // What is selected stands in the text that is shown.
-    if (!editor.has(this.selected?.layer.file)) this.#view.panel.hide();
+    if (!editor.has(this.selected?.layer.file)) this.view.panel.hide();
   }
 
   /** A layer comes behind all others in the text of the scene: while layers are edited, it is selected. */
@@ -181,10 +168,10 @@ export class Hands {
    * @param {string | undefined} key
    */
   #reselect(key) {
-    const hasFocus = this.#view.surface.contains(document.activeElement);
+    const hasFocus = this.view.surface.contains(document.activeElement);
     const isOther = key !== this.#selection.key;
     this.#selection.key = key;
-    this.#draw(isOther);
+    this.draw(isOther);
     // The keys act on what is selected.
     if (isOther && hasFocus) this.focus(key);
   }
@@ -197,10 +184,10 @@ export class Hands {
   select(key) {
     if (key === this.#selection.key) return;
     // What was typed is the name of the layer that was selected.
-    this.#view.panel.name.commit();
+    this.view.panel.name.commit();
     this.grip.end();
     this.#selection.key = key;
-    this.#draw(true);
+    this.draw(true);
   }
 
   /**
@@ -209,17 +196,12 @@ export class Hands {
    */
   focus(key) {
     this.select(key);
-    this.#view.focus(key);
-  }
-
-  /** @param {EditedLayer | undefined} edited */
-  mark(edited) {
-    this.#view.boxes.mark(edited?.key);
+    this.view.focus(key);
   }
 
   /** @param {string} sentence */
   say(sentence) {
-    this.#view.panel.note = sentence;
+    this.view.panel.note = sentence;
   }
 
   /** @param {"undo" | "redo"} what */
@@ -233,7 +215,7 @@ export class Hands {
    * @param {1 | -1} by
    */
   focusNeighbour(by) {
-    const next = this.#view.boxes.neighbour(this.#selection.key, by);
+    const next = this.view.boxes.neighbour(this.#selection.key, by);
     if (next) this.focus(next);
   }
 
@@ -246,12 +228,8 @@ export class Hands {
     const found = this.#layers.all.find(({ layer }) => layer.index === index);
     if (!found) return false;
     this.focus(found.key);
-    this.#view.surface.scrollIntoView({ block: "nearest" });
+    this.view.surface.scrollIntoView({ block: "nearest" });
     return true;
-  }
-
-  focusPanel() {
-    this.#view.panel.focus();
   }
 
   /** Leads to the lines of the selected layer in the text. */
@@ -293,7 +271,7 @@ export class Hands {
   }
 
   focusName() {
-    if (this.selected) this.#view.panel.name.focus();
+    if (this.selected) this.view.panel.name.focus();
   }
 
   /** Plays the selected layer once. */
@@ -322,7 +300,7 @@ export class Hands {
       this.#edits.assertPossible();
       this.#selection.remember();
       const made = edit();
-      this.#draw(false);
+      this.draw(false);
       if (focuses) this.focus(made?.key);
     });
   }
@@ -342,9 +320,9 @@ export class Hands {
   }
 
   /** @param {boolean} isNew Whether another layer is selected. */
-  #draw(isNew) {
-    if (this.isEditing) this.#view.draw(this.#layers, this.selected, isNew);
-    else this.#view.panel.hide();
+  draw(isNew) {
+    if (this.isEditing) this.view.draw(this.#layers, this.selected, isNew);
+    else this.view.panel.hide();
   }
 }
 

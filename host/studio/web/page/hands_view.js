@@ -9,6 +9,7 @@ import { PanelCover } from "./panel_cover.js";
 
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer, EditedLayers } from "./edited_layers.js" */
+/** @import { Hands } from "./hands.js" */
 /** @import { Most } from "./layer_numbers.js" */
 /** @import { Area, FrictionMap } from "./map.js" */
 
@@ -18,7 +19,7 @@ export class HandsView {
   /** The element around the boxes. */
   surface = element("div", { className: "hands", role: "group", tabIndex: -1, hidden: true, "aria-label": "Layers" });
   boxes = new LayerBoxes(this.surface);
-  panel = new LayerPanel();
+  panel;
   #cover;
   /** What can be felt of the scene, as its check said. */
   reach = /** @type {Most} */ ({ naturalN: 0.25, lowN: 0.25, highN: 0.38, reachN: 0.38 });
@@ -26,13 +27,13 @@ export class HandsView {
   /**
    * @param {FrictionMap} map
    * @param {Schema} schema
+   * @param {Hands} hands
    */
-  constructor(map, schema) {
+  constructor(map, schema, hands) {
+    this.panel = new LayerPanel(hands);
     this.#map = map;
     this.#schema = schema;
     map.box.append(this.surface);
-    // Tab leads from a layer to its panel.
-    map.box.closest(".map-card")?.after(this.panel.element);
     this.#cover = new PanelCover(this.panel.element);
   }
 

@@ -4,12 +4,11 @@
 import { projectOf, UNPACKED_MAX_BYTES } from "./archive.js";
 import { byId, sentenceOf, shortName } from "./dom.js";
 import { forgetNotice, notify } from "./notices.js";
-import { TEXT_MAX_BYTES, isPicture, sameName, tooLarge } from "./project.js";
+import { TEXT_MAX_BYTES, isPicture, isToml, sameName, tooLarge } from "./project.js";
 
-/** @import { Files } from "../engine/types" */
+/** @import { Engine } from "../engine/engine.js" */
 /** @import { Kind } from "./profiles.js" */
 /** @import { NamedFile, SavedScene } from "./project.js" */
-/** @typedef {(files?: Files, entry?: string) => Promise<{ names: string[] }>} UsedFiles */
 /** @typedef {{ name: string, text: string }} OwnProfile */
 
 /**
@@ -17,15 +16,6 @@ import { TEXT_MAX_BYTES, isPicture, sameName, tooLarge } from "./project.js";
  * @type {Record<string, number>}
  */
 const MAX_BYTES = { toml: TEXT_MAX_BYTES, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: UNPACKED_MAX_BYTES };
-const JPEG = [0xff, 0xd8, 0xff];
-/**
- * The first bytes of pictures, by the ending of their names.
- * @type {Record<string, number[]>}
- */
-const SIGNATURES = { png: [0x89, 0x50, 0x4e, 0x47], jpg: JPEG, jpeg: JPEG };
-/** The last chunk of a PNG, and in how many bytes at the end it is looked for. */
-const PNG_END = "IEND";
-const PNG_END_BYTES = 64;
 
 /**
  * What stands in files that a person gives: texts that are not sorted yet, and the other files.
@@ -37,8 +27,8 @@ const PNG_END_BYTES = 64;
  */
 
 export class Incoming {
-  /** @type {UsedFiles} */
-  #usedFiles;
+  #engine;
+  #usedByScene;
   /**
    * What could be taken of the files.
    * @type {(found: Found) => unknown}
@@ -46,12 +36,13 @@ export class Incoming {
   onFiles = () => {};
 
   /**
-   * `usedFiles(files, entry)` gives the names of the files that a scene uses; without arguments, those of the scene
-   * that the page has.
-   * @param {UsedFiles} usedFiles
+   * `usedByScene()` gives the names of the files that the scene of the page uses.
+   * @param {Engine} engine
+   * @param {() => Promise<string[]>} usedByScene
    */
-  constructor(usedFiles) {
-    this.#usedFiles = usedFiles;
+  constructor(engine, usedByScene) {
+    this.#engine = engine;
+    this.#usedByScene = usedByScene;
     const input = byId("files");
     input.onchange = () => {
       this.take([...(input.files ?? [])]);
@@ -86,7 +77,7 @@ export class Incoming {
     forgetNotice();
     for (const file of list) {
       try {
-        Object.assign(found, await read(file, found));
+        await this.#read(file, found);
       } catch (error) {
         refused.push(`${file.name}: ${sentenceOf(error)}`);
       }
@@ -106,6 +97,20 @@ export class Incoming {
   }
 
   /**
+   * @param {File} file
+   * @param {Found} found Takes what stands in the file.
+   */
+  async #read(file, found) {
+    const bytes = await contentOf(file);
+    const name = sameName(file.name);
+    if (isPicture(name)) {
+      await this.#engine.picture(bytes);
+      found.files.push([name, bytes]);
+    } else if (isToml(name)) found.texts.push([name, textOf(bytes)]);
+    else found.scene = projectOf(bytes);
+  }
+
+  /**
    * Tells the scene among the texts from the files that it uses, and from profiles to play with.
    * @param {Found} found
    * @param {string[]} refused
@@ -113,14 +118,17 @@ export class Incoming {
   async #sort(found, refused) {
     const texts = Object.fromEntries(found.texts);
     // A scene of the drop, or the scene that the page has, may use the others.
-    const used = new Set((await this.#usedFiles()).names.map(sameName));
+    const used = new Set((await this.#usedByScene()).map(sameName));
+    /** @type {Record<string, Kind | "scene">} */
+    const kinds = {};
     for (const entry of Object.keys(texts)) {
-      const { names } = await this.#usedFiles(texts, entry);
+      const { names, kind } = await this.#engine.usedFiles(texts, entry);
       for (const name of names) if (name !== entry) used.add(sameName(name));
+      kinds[entry] = kind;
     }
     for (const [fileName, text] of found.texts) {
       const name = fileName.replace(/\.toml$/i, "");
-      const kind = kindOf(text);
+      const kind = kinds[fileName];
       if (used.has(fileName)) found.files.push([fileName, text]);
       else if (kind !== "scene") found.profiles.push([kind, { name, text }]);
       else if (!found.scene) found.scene = { name, text, files: [] };
@@ -131,46 +139,24 @@ export class Incoming {
 }
 
 /**
- * What stands in a file, if it can be taken.
+ * The content of a file that can be taken.
  * @param {File} file
- * @param {Found} found
- * @returns {Promise<Partial<Found>>}
  */
-export async function read(file, found) {
+export async function contentOf(file) {
   const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
   if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
   if (file.size > MAX_BYTES[ending]) throw new Error(tooLarge("file", file.size, MAX_BYTES[ending]));
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  if (ending === "zip") return { scene: projectOf(bytes) };
-  if (isPicture(file.name)) {
-    if (SIGNATURES[ending].some((byte, at) => bytes[at] !== byte))
-      throw new Error(`this is no ${ending === "png" ? "PNG" : "JPEG"} picture, whatever its name says`);
-    if (ending === "png" && !String.fromCharCode(...bytes.slice(-PNG_END_BYTES)).includes(PNG_END))
-      throw new Error("this PNG picture is cut off: its end is missing; save or copy it anew");
-    return { files: [...found.files, [sameName(file.name), bytes]] };
-  }
-  const text = textOf(bytes);
-  if (text.trim() === "") throw new Error("this file is empty: it has no scene");
-  return { texts: [...found.texts, [sameName(file.name), text]] };
+  return new Uint8Array(await file.arrayBuffer());
 }
 
 /** @param {Uint8Array} bytes */
 function textOf(bytes) {
+  let text;
   try {
-    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+    text = new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
     throw new Error("this is no text in UTF-8");
   }
-}
-
-/**
- * Kind of a TOML text. One of no known kind is read as a scene, to show its mistakes.
- * @param {string} text
- * @returns {Kind | "scene"}
- */
-function kindOf(text) {
-  if (/^\s*(\[|version\s*=)/m.test(text)) return "scene";
-  if (/^\s*friction_coefficient\s*=/m.test(text)) return "finger";
-  if (/^\s*reports_per_s\s*=/m.test(text)) return "touch";
-  return /^\s*width_mm\s*=/m.test(text) ? "screen" : "scene";
+  if (text.trim() === "") throw new Error("this file is empty: it has no scene");
+  return text;
 }

@@ -43,7 +43,7 @@ export class LayerEdits {
     const name = freeLayerName(base, this.#names());
     const screenMm = /** @type {[number, number]} */ ([screen.widthMm, screen.heightMm]);
     const added = withLayer({ text: this.#editor.text, name, layer, screenMm, takenMm: this.#taken() });
-    this.#make(undefined, added.text);
+    this.#editor.change(undefined, added.text);
     const layers = new TomlText(added.text).value(["layer"]);
     const at = Array.isArray(layers) ? layers.length - 1 : 0;
     const { kind } = /** @type {{ kind: string }} */ (/** @type {any} */ (layers)[at]);
@@ -60,14 +60,14 @@ export class LayerEdits {
     const own = copied.value(["layer", at + 1, "name"]);
     const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;
-    const to = placeOf(copied, at + 1, layer, screen, false);
+    const to = placeOf(copied, at + 1, layer, screen);
     const all = bounds(place.box, place.copies);
     const isMoved = !place.whyNotMoved;
     const dx = isMoved ? aside(all.x, screen.widthMm - all.x - all.width) : 0;
     const dy = isMoved ? aside(all.y, screen.heightMm - all.y - all.height) : 0;
     const changes = isMoved ? to.move(dx, dy) : [];
     if (typeof own === "string") changes.push({ path: ["layer", at + 1, "name"], value: name, decimals: 0 });
-    this.#make(layer.file, copied.with(changes));
+    this.#editor.change(layer.file, copied.with(changes));
     const [x, y, width, height] = layer.boxMm ?? [0, 0, 0, 0];
     const boxMm = layer.boxMm && /** @type {Layer["boxMm"]} */ ([x + dx, y + dy, width, height]);
     return this.#layers.insert({ ...layer, index: UNCHECKED, name, boxMm }, at + 1);
@@ -81,26 +81,15 @@ export class LayerEdits {
     const { toml, at, layer, place } = edited;
     if (!toml || at === undefined) throw new Error(place.whyNotMoved);
     if (this.#names().includes(name)) throw new Error(`Another layer is called ${name}.`);
-    this.#make(layer.file, toml.with([{ path: ["layer", at, "name"], value: name, decimals: 0 }]));
+    this.#editor.change(layer.file, toml.with([{ path: ["layer", at, "name"], value: name, decimals: 0 }]));
     return this.#layers.rename(edited, name);
   }
 
   /** @param {EditedLayer} edited */
   remove(edited) {
     if (!edited.toml || edited.at === undefined) throw new Error(edited.place.whyNotMoved);
-    this.#make(edited.layer.file, edited.toml.without(edited.at));
+    this.#editor.change(edited.layer.file, edited.toml.without(edited.at));
     this.#layers.remove(edited);
-  }
-
-  /**
-   * @param {string | undefined} file
-   * @param {string} text
-   */
-  #make(file, text) {
-    const held = this.#editor.hold(file);
-    const isMade = held.make(text);
-    held.end();
-    if (!isMade) throw new Error("The text has no room for this layer.");
   }
 
   #names() {
@@ -159,7 +148,7 @@ function newLayer(name, kind, boxMm) {
     gainMin: 0,
     gainMax: 1,
     gainReach: null,
-    controls: [],
+    copies: 1,
     from: [1, 1],
     boxMm,
   };

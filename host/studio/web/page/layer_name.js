@@ -1,18 +1,19 @@
 // The name of the selected layer, as a field in the head of its panel.
 // @ts-check
 
-import { NAME_MAX, element } from "./dom.js";
+import { byId } from "./dom.js";
+
+/** @import { Hands } from "./hands.js" */
 
 export class LayerName {
   /** The name that the layer has. */
   #name = "";
-  element = element("input", { className: "layer-name", type: "text", maxLength: NAME_MAX, title: "Name (F2)" });
-  /** The layer is to have this name. @type {(name: string) => void} */
-  onName = () => {};
-  /** Nothing more is to be written: the keys act on the layer. */
-  onLeave = () => {};
+  element = byId("layer-name");
+  #hands;
 
-  constructor() {
+  /** @param {Hands} hands That name the layer. */
+  constructor(hands) {
+    this.#hands = hands;
     const { element: field } = this;
     field.onchange = () => this.commit();
     field.onkeydown = (event) => {
@@ -22,7 +23,7 @@ export class LayerName {
       if (event.key !== "Enter" && event.key !== "Escape") return;
       event.preventDefault();
       event.stopPropagation();
-      this.onLeave();
+      hands.focus(hands.selected?.key);
     };
   }
 
@@ -30,7 +31,7 @@ export class LayerName {
   commit() {
     const name = this.element.value.trim();
     this.element.value = this.#name;
-    if (name !== "" && name !== this.#name) this.onName(name);
+    if (name !== "" && name !== this.#name) this.#hands.rename(name);
   }
 
   /**

@@ -62,6 +62,10 @@ const COPIES_MAX = 64;
 const CLOSE = 1e-6;
 /** Ends of sliders, times a power of ten. */
 const ROUND = [1, 2, 5, 10];
+/** Ends of sliders that no value moves, by field or unit. @type {Record<string, [number, number]>} */
+const FIXED_ENDS = { duty: [0, 1], "°": [-180, 180], "mm/s": [-100, 100] };
+/** Usual ends of others: the right one moves for a value beyond it. @type {Record<string, [number, number]>} */
+const USUAL_ENDS = { gain: [0, 2], "×": [0, 2], mm: [0.5, 20], Hz: [1, 300], ms: [1, 100], "": [0, 40] };
 /** @type {[ending: string, unit: string, decimals: number, step: number][]} */
 const UNITS = [
   ["_mm_per_s", "mm/s", 1, 1],
@@ -192,27 +196,12 @@ function stemOf(field) {
  * @returns {[number, number]}
  */
 function ends(field, unit, value, isTotal, { naturalN, reachN }) {
-  switch (unit) {
-    case "N":
-      return isTotal ? [naturalN, reachN] : [value < 0 ? naturalN - reachN : 0, reachN - naturalN];
-    case "of reach":
-      return [value < 0 ? -1 : 0, 1];
-    case "×":
-      return [0, roundAbove(2, value)];
-    case "°":
-      return [-180, 180];
-    case "mm":
-      return [0.5, roundAbove(20, value)];
-    case "mm/s":
-      return [-100, 100];
-    case "Hz":
-      return [1, roundAbove(300, value)];
-    case "ms":
-      return [1, roundAbove(100, value)];
-    default:
-      if (field === "duty") return [0, 1];
-      return [0, field === "gain" ? roundAbove(2, value) : roundAbove(40, value)];
-  }
+  if (unit === "N") return isTotal ? [naturalN, reachN] : [value < 0 ? naturalN - reachN : 0, reachN - naturalN];
+  if (unit === "of reach") return [value < 0 ? -1 : 0, 1];
+  const fixed = FIXED_ENDS[field] ?? FIXED_ENDS[unit];
+  if (fixed) return fixed;
+  const [least, usual] = USUAL_ENDS[field] ?? USUAL_ENDS[unit];
+  return [least, roundAbove(usual, value)];
 }
 
 /**

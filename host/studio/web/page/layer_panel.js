@@ -1,22 +1,22 @@
 // The panel of the mode Edit: place and numbers of the layer that is selected, and layers to add.
 // @ts-check
 
-import { element } from "./dom.js";
+import { byId, element } from "./dom.js";
 import { feltLine } from "./felt.js";
 import { LayerName } from "./layer_name.js";
 import { UNCHECKED } from "./layer_edits.js";
 import { ChoiceRow, NumberRow } from "./number_row.js";
+import { isSlider } from "./slider_touch.js";
 import { additions, numberText } from "./toml_text.js";
 
 /** @import { Layer } from "../engine/types" */
 /** @import { EditedLayer } from "./edited_layers.js" */
+/** @import { Hands } from "./hands.js" */
 /** @import { Most, Tuned } from "./layer_numbers.js" */
 /** @import { Place, Side } from "./place.js" */
 
 /** @typedef {{ nameLayer: (layer: string) => void, show: (about: any) => void }} Row Of numbers or of words. */
 
-/** @type {[Side, string][]} */
-const SIDES = [["x", "left"], ["y", "top"], ["width", "width"], ["height", "height"]];
 const SIDE_DECIMALS = 2;
 /** Least height of the panel, CSS pixels. */
 const LEAST_PX = 220;
@@ -29,15 +29,10 @@ const HINT =
 const EMPTY_HINT = "This scene has no layer yet: add one.";
 
 export class LayerPanel {
-  element = element("div", { className: "layer-panel", role: "group", hidden: true });
+  element = byId("layer-panel");
   /** The field of the name. */
-  name = new LayerName();
-  /** The kind, where the name does not say it. */
-  #kind = element("span", {});
-  #note = element("p", { className: "fine note", role: "status" });
-  #felt = element("div", { className: "layer-felt" });
-  /** Why it is felt or not. It stands below the numbers, so that no number moves when its words change. */
-  #why = element("p", { className: "fine layer-why" });
+  name;
+  #note = byId("layer-note");
   /** The fields of the sides of the box. */
   #sides = /** @type {Map<Side, HTMLInputElement>} */ (new Map());
   /** The rows of the numbers, and of the words that are chosen, by field. */
@@ -50,33 +45,49 @@ export class LayerPanel {
   #feltFor = "";
   /** For what the panel was made. */
   #madeFor = "";
-  /**
-   * A number of the layer is being changed, or a word chosen: `onTuned(about, value)`, until `onEnd()`.
-   * @type {(about: Tuned, value: number | string) => void}
-   */
-  onTuned = () => {};
-  /**
-   * Likewise a side of its box.
-   * @type {(side: Side, mm: number) => void}
-   */
-  onSide = () => {};
-  onEnd = () => {};
-  onText = () => {};
-  onPlayOnce = () => {};
-  onDuplicate = () => {};
-  onDelete = () => {};
-  onClose = () => {};
-  /**
-   * A layer is to be added: `onAdd(name)`, one of those that can be.
-   * @type {(name: string) => void}
-   */
-  onAdd = () => {};
-  /** Likewise a picture, which has to be chosen first. */
-  onPicture = () => {};
+  #hands;
 
-  constructor() {
+  /** @param {Hands} hands That tune, move, double and delete the layer, and add others. */
+  constructor(hands) {
+    this.#hands = hands;
+    this.name = new LayerName(hands);
+    this.element.addEventListener("keydown", (event) => this.#key(event));
     // A key that is held when the focus leaves is released elsewhere: no keyup is heard here.
-    this.element.addEventListener("focusout", () => this.onEnd());
+    this.element.addEventListener("focusout", () => hands.grip.end());
+    // What was typed before is not taken back with what a finger does now.
+    this.element.addEventListener("pointerdown", () => hands.grip.end(), { capture: true });
+    // The browser has taken the finger for something else.
+    this.element.addEventListener("pointercancel", () => hands.grip.cancel());
+    this.element.addEventListener("beforeinput", takeComma);
+    /** @type {NodeListOf<HTMLInputElement>} */
+    const sides = this.element.querySelectorAll("[data-side]");
+    for (const input of sides) this.#addSide(/** @type {Side} */ (input.dataset.side), input);
+    byId("deselect").onclick = () => hands.focus(undefined);
+    byId("play-once").onclick = () => hands.playOnce();
+    byId("duplicate").onclick = () => hands.duplicate();
+    byId("layer-text").onclick = () => hands.showText();
+    byId("delete-layer").onclick = () => hands.delete();
+    const additionButtons = additions().map(({ name, words, isPicture }) => {
+      const onclick = () => (isPicture ? hands.onPicture() : hands.add(name));
+      const about = { title: words, "aria-label": `Add ${name}`, onclick };
+      return element("button", about, isPicture ? `${name}…` : name);
+    });
+    byId("layer-add").append(...additionButtons);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    const hands = this.#hands;
+    if (event.key === "F2") hands.focusName();
+    // A number that is again what it was before is no change to a browser.
+    if (event.key === "Enter") hands.grip.end();
+    if (event.key !== "Escape") return;
+    if (hands.grip.isHolding) {
+      event.preventDefault();
+      hands.grip.cancel();
+      letGo(event.target);
+    }
+    hands.focus(hands.selected?.key);
   }
 
   /**
@@ -96,9 +107,10 @@ export class LayerPanel {
   }
 
   focus() {
+    const first = { none: ".layer-add button", fixed: "#deselect", layer: "[data-side]" };
     /** @type {HTMLElement | null} */
-    const first = this.element.querySelector("input[type=number]") ?? this.element.querySelector("button");
-    first?.focus();
+    const found = this.element.querySelector(first[/** @type {keyof typeof first} */ (this.element.dataset.shows)]);
+    found?.focus();
   }
 
   /**
@@ -141,8 +153,11 @@ export class LayerPanel {
   #nameLayer({ name, kind }, isOther) {
     this.element.setAttribute("aria-label", `${name}: place and numbers`);
     this.name.show(name, isOther);
-    this.#kind.textContent = name === kind ? "" : kind;
-    for (const [side, label] of SIDES) this.#sides.get(side)?.setAttribute("aria-label", `${label} of ${name}, mm`);
+    byId("layer-title").textContent = name;
+    // Where the name does not say it.
+    byId("layer-kind").textContent = name === kind ? "" : kind;
+    for (const input of this.#sides.values())
+      input.setAttribute("aria-label", `${input.labels?.[0].textContent} of ${name}, mm`);
     for (const row of this.#rows.values()) row.nameLayer(name);
   }
 
@@ -158,9 +173,9 @@ export class LayerPanel {
     if (feltFor === this.#feltFor) return;
     this.#feltFor = feltFor;
     const isChecked = index !== UNCHECKED;
-    this.#felt.replaceChildren(...(isChecked ? [feltLine(layer, reach)] : []));
+    byId("layer-felt").replaceChildren(...(isChecked ? [feltLine(layer, reach)] : []));
     // The sentence begins with the verdict, which the line shows.
-    this.#why.textContent = isChecked ? felt.replace(`${perceived?.verdict}: `, "") : "";
+    byId("layer-why").textContent = isChecked ? felt.replace(`${perceived?.verdict}: `, "") : "";
   }
 
   /**
@@ -169,14 +184,11 @@ export class LayerPanel {
    * @param {boolean} isNew Whether a layer was selected before.
    */
   showNone(count, isNew) {
-    const madeFor = `none of ${Math.min(count, 1)}`;
     if (isNew) this.sayFirst();
-    if (madeFor !== this.#madeFor) {
-      this.element.setAttribute("aria-label", "Layers to add");
-      const hint = element("p", { className: "soft" }, count > 0 ? HINT : EMPTY_HINT);
-      this.element.replaceChildren(hint, this.#note, this.#additions());
-    }
-    this.#madeFor = madeFor;
+    this.#madeFor = "";
+    this.element.dataset.shows = "none";
+    this.element.setAttribute("aria-label", "Layers to add");
+    byId("layer-hint").textContent = count > 0 ? HINT : EMPTY_HINT;
     this.element.hidden = false;
   }
 
@@ -185,76 +197,33 @@ export class LayerPanel {
     this.#madeFor = "";
   }
 
-  /** The buttons that add layers. */
-  #additions() {
-    const buttons = additions().map(({ name, words, isPicture }) => {
-      const onclick = () => (isPicture ? this.onPicture() : this.onAdd(name));
-      const about = { title: words, "aria-label": `Add ${name}`, onclick };
-      return element("button", about, isPicture ? `${name}…` : name);
-    });
-    return element("div", { className: "layer-add", role: "group", "aria-label": "Add a layer" }, "Add", ...buttons);
-  }
-
   /**
    * @param {EditedLayer} edited
    * @param {Tuned[]} tuned
    */
   #make({ layer: { name, startsOn }, at }, tuned) {
-    this.#sides.clear();
     this.#rows.clear();
-    const onclick = () => this.onClose();
-    const close = element("button", { "aria-label": "Deselect", title: "Deselect (Escape)", onclick }, "✕");
-    const named = at === undefined ? element("b", {}, name) : this.name.element;
-    const head = element("div", { className: "layer-panel-head" }, named, this.#kind, close);
-    this.element.replaceChildren(head);
-    if (at === undefined) this.element.append(this.#note);
-    else {
-      const sides = SIDES.map(([side, label]) => this.#side(side, label));
-      this.element.append(
-        this.#felt,
-        element("div", { className: "layer-sides" }, ...sides),
-        element("div", { className: "layer-numbers" }, ...tuned.map((about) => this.#row(about, name))),
-        this.#note,
-        this.#why,
-        this.#actions(startsOn),
-      );
-    }
-    this.element.append(this.#additions());
+    byId("layer-numbers").replaceChildren(...tuned.map((about) => this.#row(about, name)));
+    byId("play-once").hidden = startsOn;
+    this.element.dataset.shows = at === undefined ? "fixed" : "layer";
     this.element.scrollTop = 0;
-  }
-
-  /** @param {boolean} startsOn */
-  #actions(startsOn) {
-    const action = (/** @type {string} */ words, /** @type {string} */ title, /** @type {() => void} */ onclick) =>
-      element("button", { type: "button", title, onclick }, words);
-    return element(
-      "div",
-      { className: "layer-actions" },
-      ...(startsOn
-        ? []
-        : [action("Play once", "Plays this layer, which starts off, under a finger that slides", () => this.onPlayOnce())]),
-      action("Duplicate", "A copy beside it (Ctrl+D)", () => this.onDuplicate()),
-      action("Text", "To its text (Ctrl+Enter)", () => this.onText()),
-      action("Delete", "Take it out (Delete)", () => this.onDelete()),
-    );
   }
 
   /**
    * @param {Side} side
-   * @param {string} label
+   * @param {HTMLInputElement} input
    */
-  #side(side, label) {
-    const input = element("input", { type: "number", step: 0.5 });
+  #addSide(side, input) {
+    const { grip } = this.#hands;
     input.oninput = () => {
-      if (input.value !== "" && Number.isFinite(input.valueAsNumber)) this.onSide(side, input.valueAsNumber);
+      if (input.value !== "" && Number.isFinite(input.valueAsNumber)) grip.setSide(side, input.valueAsNumber);
     };
     input.onchange = () => {
-      this.onEnd();
+      grip.end();
       // What is no number was not taken.
       if (input.value === "" && this.#place) input.value = numberText(this.#place.box[side], SIDE_DECIMALS);
     };
     this.#sides.set(side, input);
-    return element("label", {}, label, input);
   }
 
   /**
@@ -262,9 +231,11 @@ export class LayerPanel {
    * @param {string} layer
    */
   #row(about, layer) {
+    const { grip } = this.#hands;
+    const { path, decimals } = about;
     const row = "options" in about ? new ChoiceRow(about, layer) : new NumberRow(about, layer);
-    row.onValue = (value) => this.onTuned(about, value);
-    row.onEnd = () => this.onEnd();
+    row.onValue = (value) => grip.change([{ path, value, decimals }]);
+    row.onEnd = () => grip.end();
     this.#rows.set(about.field, row);
     return row.element;
   }
@@ -295,4 +266,27 @@ export class LayerPanel {
       maxHeight: `${Math.min(height, around.clientHeight - 2 * EDGE_PX)}px`,
     });
   }
+}
+
+/**
+ * A comma in a number is a point. Browsers leave it out, which makes the number ten times as large.
+ * @param {InputEvent} event
+ */
+function takeComma(event) {
+  const { target, data, cancelable } = event;
+  const isNumber = target instanceof HTMLInputElement && target.type === "number";
+  if (!isNumber || !cancelable || !data?.includes(",")) return;
+  event.preventDefault();
+  // A field of a number has no selection that a script could replace.
+  document.execCommand("insertText", false, data.replaceAll(",", "."));
+}
+
+/**
+ * A slider that is dragged follows the pointer no more.
+ * @param {EventTarget | null} target
+ */
+function letGo(target) {
+  if (!isSlider(target)) return;
+  target.disabled = true;
+  target.disabled = false;
 }

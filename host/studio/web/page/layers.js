@@ -2,8 +2,10 @@
 // @ts-check
 
 import { byId, element, shortName } from "./dom.js";
-import { feltLine, stepLine } from "./felt.js";
+import { feltLine, stepWords } from "./felt.js";
+import { UNCHECKED } from "./layer_edits.js";
 import { attempt, notify } from "./notices.js";
+import { SHARED_LINE, TomlText } from "./toml_text.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Layer } from "../engine/types" */
@@ -55,7 +57,7 @@ export class Layers {
     const focused = panel.contains(active) ? active?.getAttribute("aria-label") : undefined;
     this.#shown = layers;
     panel.replaceChildren(...layers.map((layer) => this.#row(layer, scale)));
-    if (layers.length > 0) panel.append(stepLine());
+    if (layers.length > 0) panel.append(element("p", { className: "fine step-words" }, stepWords()));
     else panel.append(element("p", { className: "soft" }, "This scene has no layer yet."));
     if (!focused) return;
     /** @type {HTMLElement | null} */
@@ -74,9 +76,8 @@ export class Layers {
    * @param {Scale} scale
    */
   #row(layer, scale) {
-    const { kind, file, from, controls } = layer;
+    const { kind, file, from, copies } = layer;
     const name = shortName(layer.name);
-    const copies = controls.length > 1 ? ` × ${controls.length}` : "";
     const shown = { className: "link", title: file ?? "" };
     const goTo = () => {
       const isChosen = this.onChoose(layer);
@@ -88,7 +89,7 @@ export class Layers {
       this.#editor.has(file)
         ? element("button", { ...shown, type: "button", onclick: goTo }, name)
         : element("b", shown, name),
-      ` ${kind}${copies}${file ? `, ${file}` : ""}`,
+      ` ${kind}${copies > 1 ? ` × ${copies}` : ""}${file ? `, ${file}` : ""}`,
     );
     const note = element("p", { className: "fine live-note", hidden: true });
     const row = element("div", { className: "layer" }, title, this.#controls(layer, note), note);
@@ -101,13 +102,11 @@ export class Layers {
    * @param {HTMLElement} note
    */
   #controls(layer, note) {
-    const { index, isLive, whyNotLive, file, from } = layer;
+    const { index, isLive, whyNotLive, file } = layer;
     const label = shortName(layer.name);
     if (!isLive) {
-      const isPossible = this.#editor.isTable(file, from);
-      const button = element("button", { title: whyNotLive, disabled: !isPossible }, "Make live: switch, gain");
-      button.onclick = () => this.#editor.insertAfterLine(file, from[0], "live = true");
-      return button;
+      const about = { title: whyNotLive, disabled: !this.#editor.has(file) };
+      return element("button", { ...about, onclick: () => attempt(() => this.#makeLive(layer)) }, "Make live: switch, gain");
     }
     const state = this.#live.get(index) ?? { on: layer.startsOn, gain: layer.gain };
     const isOn = element("input", { type: "checkbox", checked: state.on, "aria-label": `${label} on` });
@@ -149,6 +148,15 @@ export class Layers {
     return element("div", { className: "live" }, on, slider, times, ...(layer.startsOn ? [] : [once]));
   }
 
+  /** @param {Layer} layer */
+  #makeLive({ file, from }) {
+    const toml = new TomlText(this.#editor.textOf(file) ?? "");
+    const at = toml.layerAt(from[0]);
+    if (at === undefined) throw new Error(SHARED_LINE);
+    const live = { path: ["layer", at, "live"], value: true, decimals: 0, after: "kind" };
+    this.#editor.change(file, toml.with([live]));
+  }
+
   /**
    * Says at the layer, and to the map, what differs from the scene's text.
    * @param {Layer} layer
@@ -174,39 +182,29 @@ export class Layers {
    * Plays a layer that is off once, with all of its copies.
    * @param {Layer} layer Of the last check, which may be newer than the scene that plays.
    */
-  async playOnce({ controls }) {
-    if (this.isSceneLoading || controls.length === 0) {
+  async playOnce({ index }) {
+    if (this.isSceneLoading || index === UNCHECKED) {
       notify("The scene is on its way to the board: play its layer once it is there.");
       return;
     }
-    for (const number of controls) await this.#engine.control(`trigger ${number}`);
+    await this.#engine.control(`trigger ${index}`);
   }
 
   /**
-   * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. If
-   * one copy is refused, those before it get their old setting back.
+   * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done.
    * @param {Layer} layer
    * @param {{ on: boolean } | { gain: number }} next
    * @param {string} words
    * @param {Live} state
    */
-  async #change({ index, controls }, next, words, state) {
-    const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;
-    for (const [copy, number] of controls.entries()) {
-      // Another scene may come between two copies.
-      if (this.isSceneLoading) {
-        notify("The scene is on its way to the board: change its layers once it is there.");
-        return false;
-      }
-      const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));
-      if (answer === undefined) {
-        for (const changed of controls.slice(0, copy)) {
-          if (!this.isSceneLoading) await attempt(() => this.#engine.control(`layer ${changed} ${before}`));
-        }
-        return false;
-      }
-      if (answer.notice) notify(answer.notice);
+  async #change({ index }, next, words, state) {
+    if (this.isSceneLoading) {
+      notify("The scene is on its way to the board: change its layers once it is there.");
+      return false;
     }
+    const answer = await attempt(() => this.#engine.control(`layer ${index} ${words}`));
+    if (answer === undefined) return false;
+    if (answer.notice) notify(answer.notice);
     Object.assign(state, next);
     this.#live.set(index, state);
     return true;

@@ -4,9 +4,10 @@
 import { imageOf } from "./colors.js";
 import { colour, contextOf } from "./dom.js";
 import { drawDraft, drawNames, drawRuler, drawScale } from "./map_labels.js";
-import { MOCKUPS, drawMockup } from "./mockup.js";
+import { drawMockup } from "./mockup.js";
 
 /** @import { Checked, FrictionField, MapSize, Screen } from "../engine/types" */
+/** @import { Mockup } from "./mockup.js" */
 /** @typedef {{ left: number, top: number, width: number, height: number }} Area Of the map in its box, CSS pixels. */
 
 /** Room for ruler and scale around the map, CSS pixels: in a narrow box they are above and below it. */
@@ -63,7 +64,7 @@ export class FrictionMap {
   /** @type {keyof typeof MAP_ALPHA} */
   look = "map";
   hasNames = true;
-  /** @type {keyof typeof MOCKUPS} */
+  /** @type {Mockup} */
   mockup = "player";
   /**
    * The map has another size: finger.js follows.

@@ -9,7 +9,9 @@ import { chosenFile } from "./dom.js";
  */
 let ownPicture;
 
-export const MOCKUPS = { player: "music player", keypad: "number pad", shop: "shop", own: "picture of mine…" };
+/** By the values of the list of mock-ups. */
+const MOCKUPS = { player, keypad, shop, own };
+/** @typedef {keyof typeof MOCKUPS} Mockup */
 
 /** Asks for a picture; resolves to whether there is one. */
 export async function chooseOwnPicture() {
@@ -20,7 +22,7 @@ export async function chooseOwnPicture() {
 
 /**
  * @param {CanvasRenderingContext2D} context
- * @param {keyof typeof MOCKUPS} name
+ * @param {Mockup} name
  * @param {number} width
  * @param {number} height
  */
@@ -32,7 +34,7 @@ export function drawMockup(context, name, width, height) {
   const scale = Math.min(width / 120, height / 80);
   context.translate((width - 120 * scale) / 2, (height - 80 * scale) / 2);
   context.scale(scale, scale);
-  ({ player, keypad, shop, own })[name](context);
+  MOCKUPS[name](context);
   context.restore();
 }
 

@@ -1,7 +1,7 @@
 // The dialog of New: small scenes to begin with, one of them with a picture of one's own, and an empty one.
 // @ts-check
 
-import { choiceButton, fillDialog } from "./dialogs.js";
+import { choiceButton } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { drawScene } from "./scene_picture.js";
@@ -31,20 +31,19 @@ export class NewScene {
   constructor(engine) {
     this.#engine = engine;
     byId("new").onclick = () => attempt(() => this.#open());
+    byId("empty-scene").onclick = () => attempt(() => this.onScene("untitled", EMPTY));
   }
 
   async #open() {
     this.#dialog.showModal();
     this.#dialog.scrollTop = 0;
-    if (this.#dialog.childElementCount > 0) return;
-    const scenes = element("div", { className: "scenes" });
-    const empty = choiceButton(this.#dialog, "Empty scene", () => this.onScene("untitled", EMPTY), {});
-    const words = element("p", { className: "soft" }, "Begin with one of these, and change it.");
-    fillDialog(this.#dialog, "New scene", [empty], words, scenes);
+    const scenes = byId("new-scenes");
+    if (scenes.childElementCount > 0) return;
     const cards = additions().map(({ name, words, isPicture, scene: text }) => {
       const canvas = element("canvas", { "aria-hidden": "true" });
-      const begin = choiceButton(this.#dialog, `Begin with ${name}`, () => this.onScene(name, text));
-      const own = choiceButton(this.#dialog, "Choose a picture…", () => this.onPicture(), {});
+      const begin = choiceButton(`Begin with ${name}`, () => this.onScene(name, text));
+      const own = choiceButton("Choose a picture…", () => this.onPicture());
+      own.className = "";
       const said = element("p", { className: "fine" }, words);
       const actions = isPicture ? [own, begin] : [begin];
       scenes.append(element("article", { className: "scene" }, canvas, element("h3", {}, name), said, ...actions));

@@ -1,67 +1,47 @@
 // The numbers that people want: friction in mN and in Weber steps, volts, speed.
 // @ts-check
 
-import { byId, element, volts } from "./dom.js";
+import { byId, volts } from "./dom.js";
 import { notify } from "./notices.js";
 
 /** @import { Frame } from "../engine/types" */
 /** @import { perception } from "./toml_text.js" */
 /** @typedef {{ friction?: number, weber?: number, voltage?: number, speed?: number }} Shown */
 
-/** Below this voltage, V rms, the drive adds nothing: what is felt beside bare glass is the finger's own noise. */
-const DRIVES_ABOVE = 1;
 /** Numbers are means over this many samples, so that they can be read. */
 const SAMPLES = 40;
 /** Speeds at which friction is shown and hidden, mm/s. They are apart, so that the numbers do not flicker. */
 const SLIDES_ABOVE = 5;
 const STANDS_BELOW = 2;
-const ABOVE =
-  "How much stronger than bare glass the friction is now, in noticeable steps (Weber steps); none where nothing is " +
-  "driven.";
 /** What stands in place of the friction of a finger that does not slide: sliding friction is not defined there. */
 const SLIDE_TO_FEEL = "slide to feel";
 
 export class Numbers {
-  /** @type {Record<string, { value: HTMLElement, unit: HTMLElement }>} */
-  #fields = {};
   /** @type {Record<string, number>} */
   #means = {};
   #isSliding = false;
   #weberStepsPerE = NaN;
+  /** Below this voltage, V rms, the drive adds nothing: what is felt beside bare glass is the finger's own noise. */
+  #offBelowVRms = NaN;
 
+  /** A press on the name of a number says what it means, as the title of both does. */
   constructor() {
-    /** @param {[key: string, title: string, unit: string, meaning: string, kind?: string]} field */
-    const add = (...[key, title, unit, meaning, kind = ""]) => {
-      const [value, unitShown] = [element("span"), element("small", {}, unit)];
-      this.#fields[key] = { value, unit: unitShown };
-      byId("numbers").append(
-        element(
-          "div",
-          { title: meaning },
-          element("dt", {}, explained(title)),
-          element("dd", { className: kind }, value, " ", unitShown),
-        ),
-      );
-    };
-    const wanders =
-      "It wanders with the finger's load and noise, also below the map's scale. The finger is assumed, not measured: " +
-      "About says what that means.";
-    add("friction", "Felt friction", "mN", `Friction that the simulated finger feels. ${wanders}`, "felt");
-    add("weber", "Above bare glass", "steps", ABOVE, "felt");
-    const volts = "Voltage on the electrode, as its root mean square (V rms): it adds friction, and takes none away.";
-    add("voltage", "Drive voltage", "V", volts, "voltage");
-    add("speed", "Speed", "mm/s", "Speed of the simulated finger. Friction is shown while it slides.");
-    this.#show({});
+    for (const button of byId("numbers").querySelectorAll("button"))
+      button.onclick = () => {
+        const meaning = button.closest("div")?.title;
+        notify(`${button.textContent}: ${meaning}`, undefined, { isGood: true, beside: button });
+      };
   }
 
   /**
    * The engine is there, and says what a noticeable step is.
    * @param {ReturnType<typeof perception>} perception
    */
-  know({ weberStepsPerE, weberStep }) {
+  know({ weberStepsPerE, weberStep, offBelowVRms }) {
     this.#weberStepsPerE = weberStepsPerE;
-    const row = this.#fields.weber.value.closest("div");
-    if (row) row.title = `${ABOVE} ${weberStep}`;
+    this.#offBelowVRms = offBelowVRms;
+    const row = byId("number-weber").closest("div");
+    if (row) row.title += ` ${weberStep}`;
   }
 
   /**
@@ -90,7 +70,7 @@ export class Numbers {
    * @param {number} [voltageVRms]
    */
   #weberSteps(feltN, naturalN, voltageVRms = Infinity) {
-    return voltageVRms < DRIVES_ABOVE ? 0 : Math.log(feltN / naturalN) * this.#weberStepsPerE;
+    return voltageVRms < this.#offBelowVRms ? 0 : Math.log(feltN / naturalN) * this.#weberStepsPerE;
   }
 
   /**
@@ -135,7 +115,7 @@ export class Numbers {
    * @param {number | ((number: number) => string)} digits How many digits, or what writes it.
    */
   #write(name, number, digits, isStill = false) {
-    const { value, unit } = this.#fields[name];
+    const value = byId(`number-${name}`);
     // Where nothing is added, noise takes what is felt below bare glass: never below zero.
     const write = typeof digits === "number" ? (/** @type {number} */ value) => value.toFixed(digits) : digits;
     const text = number !== undefined && Number.isFinite(number) ? write(Math.max(0, number)) : "–";
@@ -144,19 +124,6 @@ export class Numbers {
     if (value.textContent === shown) return;
     value.textContent = shown;
     value.parentElement?.classList.toggle("words", isStill);
-    unit.hidden = isStill;
+    value.parentElement?.querySelector("small")?.toggleAttribute("hidden", isStill);
   }
-}
-
-/**
- * The name of a number: a press on it, or on the number, says what it means, as the title of both does.
- * @param {string} title
- */
-function explained(title) {
-  const button = element("button", { type: "button", className: "why" }, title);
-  button.onclick = () => {
-    const meaning = button.closest("div")?.title;
-    notify(`${title}: ${meaning}`, undefined, { isGood: true, beside: button });
-  };
-  return button;
 }

@@ -1,7 +1,7 @@
 // The dialog of Open: files, and the pieces of work that the browser keeps.
 // @ts-check
 
-import { choiceButton, fillDialog } from "./dialogs.js";
+import { choiceButton } from "./dialogs.js";
 import { byId, element } from "./dom.js";
 import { attempt } from "./notices.js";
 import { fragmentIn } from "./share.js";
@@ -31,7 +31,9 @@ export class Open {
    */
   constructor(works, choose) {
     this.#works = works;
-    byId("open-files").onclick = () => this.#open(choose);
+    byId("open-files").onclick = () => this.#open();
+    byId("choose-files").onclick = choose;
+    byId("link-form").onsubmit = (event) => this.#openLink(event);
     this.#dialog.addEventListener("close", () => this.#revoke());
   }
 
@@ -39,18 +41,11 @@ export class Open {
     for (const url of this.#urls.splice(0)) URL.revokeObjectURL(url);
   }
 
-  /** @param {() => void} choose */
-  async #open(choose) {
-    const list = element("div", { className: "scenes" });
-    fillDialog(
-      this.#dialog,
-      "Open",
-      [choiceButton(this.#dialog, "Files…", choose)],
-      element("p", { className: "soft" }, "Files: a scene with its files, pictures, profiles, or a saved zip."),
-      this.#link(),
-      element("h3", {}, "Recent scenes"),
-      list,
-    );
+  async #open() {
+    const list = byId("recent");
+    list.replaceChildren();
+    byId("link").value = "";
+    byId("no-link").hidden = true;
     this.#dialog.showModal();
     const works = await this.#works.all().catch(() => /** @type {Work[]} */ ([]));
     const edited = works.filter(({ isEdited }) => isEdited);
@@ -58,22 +53,17 @@ export class Open {
     else list.append("A scene that you change is kept here by this browser. None is kept yet.");
   }
 
-  /** A field for the link of a scene: on a phone there is no other way to paste one. */
-  #link() {
-    const field = element("input", { type: "text", placeholder: "Paste a link…", "aria-label": "Link of a scene" });
-    const said = element("p", { className: "fine", hidden: true, role: "alert" });
-    const open = element("button", { type: "submit" }, "Open the link");
-    const form = element("form", { className: "row link-row" }, field, open, said);
-    form.onsubmit = (event) => {
-      event.preventDefault();
-      const fragment = fragmentIn(field.value.trim());
-      said.hidden = fragment !== undefined;
-      said.textContent = "This is no link of a scene: one that Share made has #scene= in it.";
-      if (fragment === undefined) return;
-      this.#dialog.close();
-      attempt(() => this.onLink(fragment));
-    };
-    return form;
+  /**
+   * On a phone there is no other way to paste a link.
+   * @param {Event} event
+   */
+  #openLink(event) {
+    event.preventDefault();
+    const fragment = fragmentIn(byId("link").value.trim());
+    byId("no-link").hidden = fragment !== undefined;
+    if (fragment === undefined) return;
+    this.#dialog.close();
+    attempt(() => this.onLink(fragment));
   }
 
   /** @param {Work} work */
@@ -84,7 +74,7 @@ export class Open {
       this.#urls.push(url);
       card.append(element("img", { src: url, alt: "" }));
     }
-    const open = choiceButton(this.#dialog, `Open ${name}`, () => this.onWork(id));
+    const open = choiceButton(`Open ${name}`, () => this.onWork(id));
     const remove = element("button", {}, "Delete");
     remove.onclick = () => {
       remove.textContent = "Delete for good";

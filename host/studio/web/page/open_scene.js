@@ -7,6 +7,7 @@ import { byId } from "./dom.js";
 import { attempt, forgetNotice, notify } from "./notices.js";
 import { showPictures } from "./pictures.js";
 import { assertTextsFit, isPicture, isToml } from "./project.js";
+import { pictureIn } from "./toml_text.js";
 
 /** @import { Engine } from "../engine/engine.js" */
 /** @import { Compare } from "./compare.js" */
@@ -34,7 +35,8 @@ const BACK_MS = 30_000;
 
 export class OpenScene {
   #parts;
-  #autosave;
+  /** Keeps the scene in the browser. */
+  autosave;
   /** Takes the offer away that leads back to the scene before. @type {() => void} */
   #forgetBack = () => {};
   /** Whether the scene was changed since it was opened over another. */
@@ -46,16 +48,16 @@ export class OpenScene {
   constructor(parts) {
     const { project, player, editor, compare, profiles, works } = parts;
     this.#parts = parts;
-    this.#autosave = new Autosave(works, () => this.saved);
+    this.autosave = new Autosave(works, () => this.saved);
     editor.onChange = (file, text) => {
       compare.cancel();
       this.#workOn();
       if (file !== undefined) project.files.set(file, text);
-      this.#autosave.changed();
+      this.autosave.changed();
       player.later(editor.text);
     };
     profiles.onChange = () => {
-      this.#autosave.changed();
+      this.autosave.changed();
       this.replay();
     };
     byId("scene-name").onchange = () => this.#rename(byId("scene-name").value);
@@ -68,27 +70,6 @@ export class OpenScene {
   get saved() {
     const { name, entry, profiles, files } = this.#parts.project;
     return { name, entry, profiles: { ...profiles }, text: this.#parts.editor.text, files: [...files] };
-  }
-
-  /** What was open before a reload, if anything was. */
-  last() {
-    return this.#autosave.last();
-  }
-
-  /**
-   * A piece of work that the browser keeps.
-   * @param {string} id
-   */
-  work(id) {
-    return this.#autosave.work(id);
-  }
-
-  /**
-   * The scene's map has this picture.
-   * @param {Blob} picture
-   */
-  show(picture) {
-    this.#autosave.show(picture);
   }
 
   /** Plays the scene anew, as it is now. */
@@ -180,7 +161,7 @@ export class OpenScene {
   /** @param {SceneToOpen} scene */
   async #replace({ name, text, files = [], profiles, ...work }) {
     assertTextsFit({ name, text, files });
-    const [autosave, project] = [this.#autosave, this.#parts.project];
+    const [autosave, project] = [this.autosave, this.#parts.project];
     const before = { ...this.saved, ...autosave.state };
     this.#forgetBack();
     forgetNotice();
@@ -240,19 +221,24 @@ export class OpenScene {
   }
 
   #filesChanged() {
-    this.#autosave.changed();
+    this.autosave.changed();
     this.#showFiles();
     this.replay();
   }
 
   #showFiles() {
-    const { files } = this.#parts.project;
+    const { engine, project } = this.#parts;
+    const { files } = project;
     const remove = (/** @type {string} */ name) => {
       files.delete(name);
       this.#filesChanged();
     };
-    const add = (/** @type {string} */ layer) => attempt(() => this.append(layer));
-    showPictures(this.#parts.project, add, remove);
+    const add = (/** @type {string} */ name, /** @type {Uint8Array<ArrayBuffer>} */ bytes) =>
+      attempt(async () => {
+        const { aspect } = await engine.picture(bytes);
+        await this.append(pictureIn("", name, aspect, project.screen));
+      });
+    showPictures(project, add, remove);
     /** @type {[string, string][]} */
     const texts = [];
     for (const [name, content] of files) if (isToml(name) && typeof content === "string") texts.push([name, content]);

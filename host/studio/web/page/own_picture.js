@@ -2,9 +2,11 @@
 // @ts-check
 
 import { chosenFile, sentenceOf, stemOf } from "./dom.js";
-import { read } from "./incoming.js";
+import { contentOf } from "./incoming.js";
+import { sameName } from "./project.js";
 import { pictureIn } from "./toml_text.js";
 
+/** @import { Engine } from "../engine/engine.js" */
 /** @import { Hands } from "./hands.js" */
 /** @import { OpenScene } from "./open_scene.js" */
 /** @import { Project } from "./project.js" */
@@ -16,39 +18,32 @@ import { pictureIn } from "./toml_text.js";
 
 const PICTURE_COMMENT = "A picture: black is bare glass, white the most that the drive can add.";
 
-/** Lets a person choose a picture; resolves to undefined if none is chosen. */
-export async function choosePicture() {
-  const file = await chosenFile("image/png,image/jpeg");
-  return file && chosen(file);
-}
-
 /**
- * @param {File} file
- * @returns {Promise<OwnPicture>}
+ * Lets a person choose a picture; resolves to undefined if none is chosen.
+ * @param {Engine} engine
+ * @returns {Promise<OwnPicture | undefined>}
  */
-async function chosen(file) {
-  const { files = [] } = await read(file, { texts: [], files: [], profiles: [] }).catch((error) => {
+export async function choosePicture(engine) {
+  const file = await chosenFile("image/png,image/jpeg");
+  if (!file) return undefined;
+  try {
+    const bytes = await contentOf(file);
+    const { aspect } = await engine.picture(bytes);
+    return { name: sameName(file.name), bytes, aspect };
+  } catch (error) {
     throw new Error(`${file.name}: ${sentenceOf(error)}`);
-  });
-  const [name, bytes] = files[0] ?? [];
-  if (!name || typeof bytes !== "object") throw new Error(`${file.name}: expected a picture (.png, .jpg)`);
-  // The compiler does not turn a photo as its camera says.
-  const image = await createImageBitmap(new Blob([bytes]), { imageOrientation: "none" }).catch(() => {
-    throw new Error(`${name}: this picture cannot be read`);
-  });
-  const aspect = image.width / image.height;
-  image.close();
-  return { name, bytes, aspect };
+  }
 }
 
 /**
  * Opens a scene with a picture that a person chooses, whose layer is selected.
+ * @param {Engine} engine
  * @param {OpenScene} scene
  * @param {Hands} hands
  * @param {Project} project
  */
-export async function beginWithPicture(scene, hands, project) {
-  const picture = await choosePicture();
+export async function beginWithPicture(engine, scene, hands, project) {
+  const picture = await choosePicture(engine);
   if (!picture) return;
   const { name, bytes, aspect } = picture;
   const text = pictureIn(`# ${PICTURE_COMMENT}\nversion = 1\n`, name, aspect, project.screenOfNew);

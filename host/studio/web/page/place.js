@@ -36,15 +36,14 @@ const WHOLE_SCREEN = "This layer covers the whole screen: drag a corner inwards 
  * @param {number} at Number of the layer among those of the file.
  * @param {Layer} layer
  * @param {Screen} screen
- * @param {boolean} hasOtherDefaults Whether a file that this one includes has defaults.
  * @returns {Place}
  */
-export function placeOf(toml, at, layer, screen, hasOtherDefaults) {
+export function placeOf(toml, at, layer, screen) {
   const reader = new PlacedText(toml, at, layer, screen);
   const copies = reader.copies();
   const box = reader.box(copies);
   const isWholeScreen = layer.boxMm === null;
-  const why = reader.whyNot(hasOtherDefaults);
+  const why = reader.whyNot();
   const isMovable = reader.hasRegion || reader.anchors.length > 0;
   return {
     box,

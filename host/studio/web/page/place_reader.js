@@ -176,17 +176,18 @@ export class PlaceReader {
     return [...this.#steps(this.#pathOf("repeat")), ...lengths.map((length) => length?.mm)].some(Number.isNaN);
   }
 
-  /**
-   * Why the layer can neither be moved nor resized, or "".
-   * @param {boolean} hasOtherDefaults
-   */
-  whyNot(hasOtherDefaults) {
-    const isPlaced = PLACED.includes(this.#kind) && this.#kind !== "bitmap";
-    const hasAll = (this.layer.boxMm === null || this.hasRegion) && (!isPlaced || this.anchors.length === 2);
-    if (!hasAll && hasOtherDefaults) return FROM_OTHER_DEFAULTS;
+  /** Why the layer can neither be moved nor resized, or "". */
+  whyNot() {
     if (this.#isInForeignPixels)
       return "This layer is placed in pixels of a design in another file: change it in the text.";
-    return "";
+    return this.#hasOwnPlace ? "" : FROM_OTHER_DEFAULTS;
+  }
+
+  /** Whether this file says where the layer is that the check has found in a place. */
+  get #hasOwnPlace() {
+    const isAnchored = this.anchors.length === 2;
+    if (this.#kind === "bitmap") return this.hasRegion || (isAnchored && this.length(undefined, "width") !== undefined);
+    return (this.layer.boxMm === null || this.hasRegion) && (isAnchored || !PLACED.includes(this.#kind));
   }
 
   whyNotResized() {

@@ -10,6 +10,8 @@ import { mapSizePx } from "./map.js";
 /** @import { Project } from "./project.js" */
 /** @typedef {"loading" | "loaded" | "mistaken" | "failed"} Status */
 
+/** What is said of a scene that plays as a draft. */
+export const DRAFT = "draft, clamped: a board refuses it";
 /** A pause in typing that lets a check begin, ms. */
 const PAUSE_MS = 60;
 /** Longer side of the map's picture, pixels. */

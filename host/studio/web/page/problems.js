@@ -2,6 +2,7 @@
 // @ts-check
 
 import { byId, element } from "./dom.js";
+import { DRAFT } from "./player.js";
 
 /** @import { Check, Problem } from "../engine/types" */
 /** @import { Editor } from "./editor.js" */
@@ -73,7 +74,7 @@ export function showOutcome() {
     failed: isPlaying ? `the board refuses it${meanwhile}` : "not on the board",
     loaded: isPlaying ? "plays" : "no mistakes",
   };
-  if (found.isDraft) words.loaded = `${found.count}; draft: plays as far as it can, a board refuses it`;
+  if (found.isDraft) words.loaded = `${found.count}; ${DRAFT}`;
   const check = byId("check");
   check.textContent = words[status];
   check.toggleAttribute("data-long", words[status].length > LONG);

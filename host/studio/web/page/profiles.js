@@ -29,8 +29,7 @@ export class Profiles {
    */
   constructor(project, fingers) {
     this.#project = project;
-    fill("finger", ["from the scene", ...fingers]);
-    fill("screen", ["from the scene", "example"]);
+    byId("finger").append(...fingers.map((name) => element("option", { value: name }, name)));
     for (const kind of KINDS)
       byId(kind).onchange = () => {
         this.#apply(kind, byId(kind).value);
@@ -83,12 +82,4 @@ export class Profiles {
       }
     }
   }
-}
-
-/**
- * @param {Kind} kind
- * @param {string[]} names
- */
-function fill(kind, names) {
-  byId(kind).append(...names.map((name, at) => element("option", { value: at === 0 ? "" : name }, name)));
 }

@@ -1,20 +1,17 @@
 // Real size, also on the full screen: a bank card held to the screen says how many pixels a millimetre has.
 // @ts-check
 
-import { byId, element, settings } from "./dom.js";
+import { byId, settings } from "./dom.js";
 import { attempt } from "./notices.js";
 
 /** @import { FrictionMap } from "./map.js" */
 
-/** A bank card, mm (ISO/IEC 7810 ID-1). */
-const CARD = { widthMm: 85.6, heightMm: 53.98 };
 /** Default CSS pixels per mm, without a measurement by a card: a CSS inch has 96. */
 const NOMINAL_PX_PER_MM = 96 / 25.4;
 
 export class RealSize {
   #map;
   #button = byId("real-size");
-  #dialog = byId("size");
   /** @type {number | undefined} */
   #pixelsPerMm = Number(settings.get("pixelsPerMm")) || undefined;
 
@@ -64,46 +61,16 @@ export class RealSize {
    * @param {(pixelsPerMm: number) => void} show
    */
   #ask(show) {
-    let scale = this.#pixelsPerMm ?? NOMINAL_PX_PER_MM;
-    const card = element("div", { className: "bank-card" }, "bank card");
-    const size = element("input", {
-      type: "range",
-      min: 1.5,
-      max: 12,
-      step: 0.01,
-      value: scale,
-      "aria-label": "Width of the card",
-    });
-    Object.assign(size.style, { width: "100%", margin: "12px 0 0" });
-    const draw = () =>
-      Object.assign(card.style, {
-        width: `${CARD.widthMm * scale}px`,
-        height: `${CARD.heightMm * scale}px`,
-        borderRadius: `${3.18 * scale}px`,
-      });
-    size.oninput = () => {
-      scale = Number(size.value);
-      draw();
-    };
+    const width = byId("card-width");
+    const draw = () => byId("bank-card").style.setProperty("--px-per-mm", width.value);
+    width.value = String(this.#pixelsPerMm ?? NOMINAL_PX_PER_MM);
+    width.oninput = draw;
     draw();
-    const done = element("button", { className: "primary" }, "Show in real size");
-    done.onclick = () => {
-      this.#pixelsPerMm = scale;
-      settings.set("pixelsPerMm", String(scale));
-      this.#dialog.close();
-      show(scale);
+    byId("size-done").onclick = () => {
+      this.#pixelsPerMm = Number(width.value);
+      settings.set("pixelsPerMm", width.value);
+      show(this.#pixelsPerMm);
     };
-    const cancel = element("button", { onclick: () => this.#dialog.close() }, "Cancel");
-    this.#dialog.replaceChildren(
-      element("div", { className: "head" }, element("h2", {}, "Real size"), cancel, done),
-      element(
-        "p",
-        {},
-        "Hold a bank card (85.60 mm wide) to the screen and move the slider until the outline is as wide.",
-      ),
-      size,
-      card,
-    );
-    this.#dialog.showModal();
+    byId("size").showModal();
   }
 }

@@ -1,15 +1,8 @@
 // Sound: the change of felt friction as audio.
 // @ts-check
 
-import { byId, element, settings } from "./dom.js";
+import { byId, settings } from "./dom.js";
 import { attempt } from "./notices.js";
-
-/** @type {Record<string, string>} */
-const MODES = {
-  headphones: "Headphones: the friction's change as it is, 10 Hz and up",
-  pitched: "Small loudspeakers: pitched up four times",
-  noise: "Small loudspeakers: noise that swells with the friction",
-};
 
 export class Sound {
   /**
@@ -17,9 +10,9 @@ export class Sound {
    * @type {{ context: AudioContext, node: AudioWorkletNode, gain: GainNode } | undefined}
    */
   #built;
-  #mode = settings.get("sound") ?? "headphones";
+  #mode;
   #volume = 0.7;
-  #toggle;
+  #toggle = byId("toggle-sound");
   /**
    * Behind volume, for the tests: an AnalyserNode.
    * @type {AnalyserNode | undefined}
@@ -29,25 +22,15 @@ export class Sound {
   onChange = () => {};
 
   constructor() {
-    if (!(this.#mode in MODES)) this.#mode = "headphones";
-    this.#toggle = element("button", { className: "primary" }, "Turn sound on");
     this.#toggle.onclick = () => attempt(() => (this.isOn ? this.stop() : this.start()));
-    const volume = element("input", { type: "range", min: 0, max: 1, step: 0.01, value: this.#volume, id: "volume" });
+    const volume = byId("volume");
     volume.oninput = () => this.setVolume(Number(volume.value));
-    const modes = Object.entries(MODES).map(([mode, label]) => {
-      const choice = element("input", { type: "radio", name: "sound-mode", checked: mode === this.#mode });
-      choice.onchange = () => this.#choose(mode);
-      return element("div", { className: "row" }, element("label", { className: "check" }, choice, ` ${label}`));
-    });
-    byId("panel-sound").append(
-      element("div", { className: "row" }, this.#toggle, element("label", {}, "Volume ", volume)),
-      ...modes,
-      element(
-        "p",
-        { className: "fine" },
-        "The sound shows the frequency of the friction's change, not how it feels to touch.",
-      ),
-    );
+    /** @type {NodeListOf<HTMLInputElement>} */
+    const modes = document.querySelectorAll("[name=sound-mode]");
+    const kept = [...modes].find(({ value }) => value === settings.get("sound")) ?? modes[0];
+    kept.checked = true;
+    this.#mode = kept.value;
+    for (const mode of modes) mode.onchange = () => this.#choose(mode.value);
   }
 
   get isOn() {

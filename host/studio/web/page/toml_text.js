@@ -25,6 +25,9 @@ export function editWith(made) {
   instance = made;
 }
 
+/** Why a layer without a line of its own is not changed here. */
+export const SHARED_LINE = "This layer shares its line with another: change it in the text.";
+
 export class TomlText {
   text;
   #values;
@@ -130,8 +133,9 @@ export function firstValues() {
 }
 
 /**
- * What is known of perception: the noticeable steps of a friction that is e times as large, and what such a step is.
- * @returns {{ weberStepsPerE: number, weberStep: string }}
+ * What is known of perception: the noticeable steps of a friction that is e times as large, what such a step is, and
+ * the voltage below which nothing is driven.
+ * @returns {{ weberStepsPerE: number, weberStep: string, offBelowVRms: number }}
  */
 export function perception() {
   return instance.call("perception", new Uint8Array());

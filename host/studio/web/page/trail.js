@@ -76,10 +76,7 @@ export class Trail {
       path.moveTo(from.xMm * scale, from.yMm * scale);
       path.lineTo(to.xMm * scale, to.yMm * scale);
     }
-    for (const { extra, ink } of [
-      { extra: 3, ink: "#000" },
-      { extra: 0, ink: "#fff" },
-    ]) {
+    for (const [extra, ink] of /** @type {const} */ ([[3, "#000"], [0, "#fff"]])) {
       context.strokeStyle = ink;
       for (const { alpha, width, path } of paths.values()) {
         context.globalAlpha = alpha;

@@ -2,7 +2,7 @@
 // @ts-check
 
 import { byId, element } from "./dom.js";
-import { MOCKUPS, chooseOwnPicture } from "./mockup.js";
+import { chooseOwnPicture } from "./mockup.js";
 import { attempt } from "./notices.js";
 import { MEANINGS } from "./scope.js";
 
@@ -87,7 +87,6 @@ function makeOptions(options) {
 function makeLook(map) {
   const look = byId("look");
   const mockup = byId("mockup");
-  mockup.append(...Object.entries(MOCKUPS).map(([value, words]) => element("option", { value }, words)));
   look.onchange = () => {
     map.look = /** @type {FrictionMap["look"]} */ (look.value);
     byId("mockup-label").hidden = look.value === "map";
