@@ -53,7 +53,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         Judgement::default()
     };
     let check = SceneCheck::of(&program, &config.board.limits, &costs, judgement);
-    let draft = program.is_draft().then(|| ("draft", "clamped: a board refuses this scene".to_owned()));
+    let draft = program.is_draft().then(|| ("draft", "clamped: a board refuses it".to_owned()));
     let report: Vec<feel::Line> = draft.into_iter().chain(check.lines(true)).collect();
     Ok(json!({
         "ok": !program.is_draft(),

@@ -146,6 +146,13 @@ export async function openOnlyEngine(url, options) {
       }
       return files;
     };
+    /** An instance of the module, and what makes a request of a scene, as the workers have them. */
+    globalThis.instanceOfModule = async () => {
+      const source = `${await studio.text("engine/wasm.js")}\nexport { Engine, requestOf };`;
+      const { Engine, requestOf } = await import(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
+      const instance = await Engine.start(undefined, await WebAssembly.compile(await studio.bytes("engine.wasm")));
+      return { instance, requestOf };
+    };
     /** Slides where constant.toml drives, as long as the page is open, with a sample every 8 ms of the test's clock. */
     globalThis.keepSliding = async () => {
       const beginMs = studioClock.nowMs();

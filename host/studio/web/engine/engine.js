@@ -256,27 +256,6 @@ export class Engine {
   /**
    * @param {T.Files} files
    * @param {string} entry
-   * @param {number} seed
-   * @param {number} durationMs
-   * @param {T.Profiles} [profiles]
-   */
-  async seeded(files, entry, seed, durationMs, profiles) {
-    const scene = { files, entry, ...profiles, seed, durationMs };
-    return (await this.#checker.ask({ type: "seeded", scene })).hash;
-  }
-
-  /**
-   * How many times faster than real time the simulator runs a scene in a worker.
-   * @param {T.Files} files
-   * @param {string} entry
-   */
-  async speed(files, entry, { stretches = 10, stretchMs = 480 } = {}) {
-    return (await this.#checker.ask({ type: "speed", scene: { files, entry }, stretches, stretchMs })).timesRealTime;
-  }
-
-  /**
-   * @param {T.Files} files
-   * @param {string} entry
    * @param {T.Profiles & T.PlayOptions} profiles
    */
   play(files, entry, profiles) {

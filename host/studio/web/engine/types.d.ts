@@ -15,7 +15,7 @@ export type Instance = {
 };
 export type MapSize = { widthPx: number; heightPx: number };
 /** A scene, and the numbers that some requests have besides. */
-export type Request = Scene & Partial<MapSize> & { speedMmPerS?: number; seed?: number; durationMs?: number };
+export type Request = Scene & Partial<MapSize> & { speedMmPerS?: number };
 
 export type Problem = {
   severity: "error" | "warning";
@@ -155,8 +155,6 @@ export type Questions = {
   usedFiles: { asked: { scene: Request }; answer: UsedFiles };
   picture: { asked: { bytes: Uint8Array<ArrayBuffer> }; answer: { aspect: number } };
   map: { asked: { scene: Request }; answer: FrictionField };
-  seeded: { asked: { scene: Request }; answer: { hash: string } };
-  speed: { asked: { scene: Request; stretches: number; stretchMs: number }; answer: { timesRealTime: number } };
   play: { asked: { scene: Request }; answer: unknown };
   control: { asked: { line: string }; answer: Notice };
   stop: { asked: object; answer: unknown };
