@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 use crate::host_error::HostError;
 use crate::program::ProgramError;
 
-/// A sentence about a scene called `entry`, and where in the text it belongs: `severity` (`error` or `warning`),
-/// `message`, `file` if it is not the scene, `line`, `column`, `endLine` and `endColumn`, which count from 1, columns in
-/// characters, and `help`, the nearest valid word for one that is unknown.
+/// A sentence about a scene called `entry`, and its place in the text: `severity` (`error` or `warning`), `message`,
+/// `file` if it is not the scene, and `line`, `column`, `endLine` and `endColumn`, which count from 1, columns in
+/// characters. `help` is the nearest valid word for an unknown one, or `null`.
 fn problem(diagnostic: &Diagnostic, entry: &str) -> Value {
     let Diagnostic { kind, file, line, column, text, .. } = diagnostic;
     let severity = match kind {

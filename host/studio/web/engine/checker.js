@@ -1,5 +1,5 @@
-// The worker of the compiler: checks scenes and draws their maps. It has no board, so a long compile delays nothing that a
-// board waits for.
+// The worker of the compiler: checks scenes and draws their maps. It has no board, so a long compile delays nothing that
+// a board waits for.
 // @ts-check
 "use strict";
 
