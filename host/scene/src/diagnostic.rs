@@ -4,7 +4,7 @@ use std::fmt::{self, Display};
 
 use thiserror::Error;
 
-use super::mistake::Mistake;
+use super::mistake::{FieldMistake, Mistake};
 use super::optimisation::Optimisation;
 use super::printable::printable;
 use super::warning::Warning;
@@ -70,6 +70,14 @@ impl Diagnostic {
     pub fn nearest(&self) -> Option<&str> {
         match &self.message {
             Message::Mistake(mistake) => mistake.nearest(),
+            _ => None,
+        }
+    }
+
+    /// The name of a field that the scene file does not have, if that is the mistake.
+    pub fn unknown_field(&self) -> Option<&str> {
+        match &self.message {
+            Message::Mistake(Mistake::Field(FieldMistake::UnknownField { field, .. })) => Some(field),
             _ => None,
         }
     }

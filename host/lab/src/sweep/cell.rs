@@ -6,7 +6,7 @@ use frixel_felt::judge::Verdict;
 use frixel_hil_sim::{Board, Person, StrokeError, WorldOptions};
 use frixel_model::ParameterError as ContactError;
 use frixel_play::{GoesOn, SimulationError};
-use frixel_scene::{CompileError, FieldMistake, Message, Mistake, NamedProfile, ProfileError, Program, Scene, compile};
+use frixel_scene::{CompileError, Diagnostic, NamedProfile, ProfileError, Program, Scene, compile};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -183,11 +183,7 @@ impl Cell {
 
     /// The field of the scene that is most like a parameter which the scene does not know.
     fn nearest_field(&self, error: &CompileError) -> Option<String> {
-        let unknown = error.diagnostics.iter().filter_map(|mistake| match &mistake.message {
-            Message::Mistake(Mistake::Field(FieldMistake::UnknownField { field, .. })) => Some(field.as_str()),
-            _ => None,
-        });
-        let unknown: Vec<&str> = unknown.collect();
+        let unknown: Vec<&str> = error.diagnostics.iter().filter_map(Diagnostic::unknown_field).collect();
         let is_unknown = |path: &&String| path.rsplit('.').next().is_some_and(|field| unknown.contains(&field));
         self.parameters.keys().filter(is_unknown).find_map(|path| nearest_field(&self.text, path))
     }
