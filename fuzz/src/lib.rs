@@ -24,6 +24,23 @@ use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
 
+/// A function that takes arbitrary bytes.
+pub type Target = fn(&[u8]);
+
+/// All targets by name. Those that read text get the valid part in front of the bytes.
+pub const TARGETS: [(&str, Target); 6] = [
+    ("scene_text", |bytes| scene_text(text(bytes))),
+    ("scene_bytes", scene_bytes),
+    ("scene_load", |bytes| _ = scene_load(bytes)),
+    ("parquet", parquet),
+    ("scenario", |bytes| scenario(text(bytes))),
+    ("plan", |bytes| plan(text(bytes))),
+];
+
+fn text(bytes: &[u8]) -> &str {
+    bytes.utf8_chunks().next().map_or("", |chunk| chunk.valid())
+}
+
 /// Scene files of the seed corpus: those of the gallery, and one whose finger has an empirical law.
 pub fn scene_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -11,11 +11,10 @@ mod size;
 mod stack;
 mod thumb;
 
-use std::fs;
 use std::process::Command;
 
-use crate::command::{M0_PLUS, M3, M4F, M33, root};
-pub(crate) use figures::Figures;
+use crate::command::{M0_PLUS, M3, M4F, M33, root, text_of, write};
+pub(crate) use figures::{Figures, table};
 use image::Image;
 
 /// A processor on which instructions are counted.
@@ -43,39 +42,24 @@ pub(crate) const COMMITTED: &str = "host/frixel/src/report/bench.json";
 pub(crate) fn bench() -> Result<Figures, String> {
     let mut figures = Figures::default();
     for core in [&M4F_CORE, &M3_CORE] {
-        Image::build(core, false)?.measure(&mut figures)?;
+        Image::build(core)?.measure(&mut figures)?;
     }
     for core in [&M0_PLUS_CORE, &M33_CORE] {
-        Image::build(core, false)?.count(&mut figures)?;
+        Image::build(core)?.count(&mut figures)?;
     }
     size::measure(&mut figures)?;
-    let folder = root().join("target/bench");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut paths = vec![folder.join("bench.json")];
+    let mut paths = vec![root().join("target/bench/bench.json")];
     if std::env::var_os("FRIXEL_BLESS").is_some() {
         size::measure_features(&mut figures)?;
         paths.push(root().join(COMMITTED));
     }
-    let json = figures.json(&source_date()?)?;
-    for path in paths {
-        fs::write(&path, &json).map_err(|error| format!("{}: {error}", path.display()))?;
-    }
+    let json = figures::json(&figures, &source_date()?)?;
+    paths.iter().try_for_each(|path| write(path, &json))?;
     Ok(figures)
 }
 
 /// The day of the commit that is measured.
 fn source_date() -> Result<String, String> {
-    let output = Command::new("git").args(["log", "-1", "--format=%cs"]).current_dir(root()).output();
-    let output = output.map_err(|error| format!("git, for the date of the source: {error}"))?;
-    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-}
-
-/// The figure that exceeds its limit in [`breach`].
-pub(crate) const BROKEN: &str = "m4f.inverse_table";
-
-/// Counts the instructions of an image that is deliberately slower.
-pub(crate) fn breach() -> Result<Figures, String> {
-    let mut figures = Figures::default();
-    Image::build(&M4F_CORE, true)?.count(&mut figures)?;
-    Ok(figures)
+    let date = text_of(Command::new("git").args(["log", "-1", "--format=%cs"]).current_dir(root()))?;
+    Ok(date.trim().to_owned())
 }

@@ -36,12 +36,66 @@ pub(crate) fn absolute(path: &Path) -> Result<PathBuf, String> {
     path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))
 }
 
+/// Reads a file as text.
+pub(crate) fn text(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Reads a file.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Writes a file, and makes the folders around it.
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)
+        .and_then(|()| fs::write(path, content))
+        .map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Copies a file, and makes the folders around the copy.
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    let folder = to.parent().unwrap_or(Path::new("."));
+    let copied = fs::create_dir_all(folder).and_then(|()| fs::copy(from, to));
+    copied.map(drop).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
+
+/// The files and folders in a folder, sorted.
+pub(crate) fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let paths = fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+    let mut paths: Vec<PathBuf> = paths.map_err(|error| format!("{}: {error}", folder.display()))?;
+    paths.sort();
+    Ok(paths)
+}
+
+/// The files of a folder and of those in it, sorted.
+pub(crate) fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    for path in entries(folder)? {
+        if path.is_dir() {
+            files.extend(files_below(&path)?);
+        } else {
+            files.push(path);
+        }
+    }
+    Ok(files)
+}
+
+/// Removes a folder, if it is there.
+pub(crate) fn remove(folder: &Path) -> Result<(), String> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))
+    } else {
+        Ok(())
+    }
+}
+
 /// Makes a folder, which must be empty or new, and returns its absolute path.
 pub(crate) fn empty_folder(name: &str) -> Result<PathBuf, String> {
     let folder = std::path::absolute(name).map_err(|error| format!("{name}: {error}"))?;
-    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
-    fs::create_dir_all(&folder).map_err(explain)?;
-    if fs::read_dir(&folder).map_err(explain)?.next().is_some() {
+    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    if !entries(&folder)?.is_empty() {
         return Err(format!("{} has files in it: give a new folder, or empty it", folder.display()));
     }
     Ok(folder)
@@ -72,4 +126,9 @@ pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
         Ok(status) => Err(format!("{name} failed ({status}): {command:?}")),
         Err(error) => Err(format!("{name} could not be started ({error}): {command:?}")),
     }
+}
+
+/// Runs command lines of cargo in the root of the repository, one after the other.
+pub(crate) fn run_lines(lines: &[&str]) -> Result<(), String> {
+    lines.iter().try_for_each(|line| run(line, cargo_in(".").args(line.split(' ').skip(1))))
 }

@@ -15,21 +15,18 @@
 
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use sha2::{Digest, Sha256};
 
-use crate::ci::{M0_PLUS_TARGET, M4F_TARGET, M33_TARGET, WASM_TARGET};
-use crate::command::{IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, cargo_in, empty_folder, root, run, target_folder};
+use crate::command::{
+    IMAGES_TARGET_FOLDER, M0_PLUS, M4F, M33, MUSL, bytes, cargo_in, copy, empty_folder, files_below, remove, root, run,
+    target_folder, text, write,
+};
 use crate::licences::{self, Program};
-use crate::machine_paths;
-use crate::needs::{self, Need};
-use crate::{pico_rig, studio};
+use crate::{machine_paths, needs, pico_rig, studio};
 
-/// What it needs of the machine.
-const NEEDS: [Need; 8] =
-    [M4F_TARGET, M0_PLUS_TARGET, M33_TARGET, WASM_TARGET, Need::Target(MUSL), Need::Python, Need::Node, Need::Npm];
 /// Nearly as fast as `release`, and built in a third of the time.
 const PROFILE: &str = "wheel";
 /// The folder of the Python module.
@@ -46,7 +43,7 @@ const IMAGES: [(&str, &str, Program); 6] = [
     (
         "board-pico",
         "board-pico.elf",
-        // As `EmulatedBoard::build_arguments` in `hil-sim` has them.
+        // As `hil-sim/src/emulated/image.rs` has them.
         board(PICO, M0_PLUS, &["--no-default-features", "--features", "rp2040,everything"]),
     ),
 ];
@@ -67,9 +64,8 @@ const fn board(folder: &'static str, target: &'static str, features: &'static [&
 /// Makes the folder, which must be empty or new.
 pub(crate) fn make(folder: &str) -> Result<(), String> {
     let folder = empty_folder(folder)?;
-    needs::require(&NEEDS)?;
+    needs::require(&["python3", "node", "npm"])?;
     let images = folder.join("images");
-    fs::create_dir_all(&images).map_err(|error| format!("{}: {error}", images.display()))?;
 
     command(&folder)?;
     for (program, file, Program { folder: sources, target, features, .. }) in IMAGES {
@@ -108,9 +104,7 @@ fn command(folder: &Path) -> Result<(), String> {
 /// The Python module, with the licences of what is in it.
 fn wheel(folder: &Path) -> Result<(), String> {
     let environment = target_folder().join("dist-environment");
-    let requirements = root().join(PYTHON).join("requirements.txt");
-    let requirements =
-        fs::read_to_string(&requirements).map_err(|error| format!("{}: {error}", requirements.display()))?;
+    let requirements = text(&root().join(PYTHON).join("requirements.txt"))?;
     let maturin = requirements.lines().find(|line| line.starts_with("maturin==")).ok_or("no maturin is required")?;
     run("virtual environment", Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     let installed = ["install", "--quiet", "--disable-pip-version-check", maturin];
@@ -131,9 +125,7 @@ fn wheel(folder: &Path) -> Result<(), String> {
 /// Looks into a wheel, whose files are compressed.
 fn check_unpacked(environment: &Path, wheel: &Path) -> Result<(), String> {
     let unpacked = environment.join("unpacked");
-    if unpacked.exists() {
-        fs::remove_dir_all(&unpacked).map_err(|error| format!("{}: {error}", unpacked.display()))?;
-    }
+    remove(&unpacked)?;
     let mut python = Command::new(environment.join("bin/python"));
     run("wheel's files", python.args(["-m", "zipfile", "--extract"]).arg(wheel).arg(&unpacked))?;
     files_below(&unpacked)?.iter().try_for_each(|file| machine_paths::check(file))
@@ -143,9 +135,8 @@ fn check_unpacked(environment: &Path, wheel: &Path) -> Result<(), String> {
 fn checksums(folder: &Path) -> Result<String, String> {
     let mut lines = String::new();
     for path in files_below(folder)? {
-        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         // Writing to a string cannot fail.
-        for byte in Sha256::digest(bytes) {
+        for byte in Sha256::digest(bytes(&path)?) {
             let _ = write!(lines, "{byte:02x}");
         }
         let _ = writeln!(lines, "  {}", path.strip_prefix(folder).unwrap_or(&path).display());
@@ -153,32 +144,10 @@ fn checksums(folder: &Path) -> Result<String, String> {
     Ok(lines)
 }
 
-/// The files of a folder and of those in it, sorted.
-fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(explain)? {
-        let path = entry.map_err(explain)?.path();
-        if path.is_dir() {
-            files.extend(files_below(&path)?);
-        } else {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
-    fs::copy(from, to).map(drop).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
-}
-
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use super::*;
 
     fn folder(name: &str) -> PathBuf {

@@ -6,7 +6,7 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use crate::ci;
-use crate::command::{absolute, root, run, target_folder};
+use crate::command::{absolute, bytes, remove, root, run, target_folder};
 
 /// The targets, each with its number of inputs in [`Extent::Fixed`].
 const TARGETS: [(&str, u32); 6] = [
@@ -37,10 +37,8 @@ pub(crate) enum Extent {
 pub(crate) fn run_all(extent: Extent) -> Result<(), String> {
     run("seeds", ci::beside_default("build").args(["--bin", "seeds"]))?;
     let mut build = ci::beside_default("build");
-    build.args(["--features", "frixel-fuzz/libfuzzer"]).args(TARGETS.iter().flat_map(|(target, _)| ["--bin", target]));
-    let compiler = root().join(COMPILER);
-    let compiler = absolute(&compiler)?;
-    run("fuzz targets", build.env("RUSTC_WORKSPACE_WRAPPER", compiler))?;
+    build.args(["--features", "frixel-fuzz/libfuzzer", "--bin", "fuzz"]);
+    run("fuzz targets", build.env("RUSTC_WORKSPACE_WRAPPER", absolute(&root().join(COMPILER))?))?;
     let (programs, folder) = (target_folder().join("debug"), target_folder().join("fuzz"));
     let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs, &folder, extent);
     let running: Vec<Fuzzer> = TARGETS.into_iter().map(start).collect::<Result<_, _>>()?;
@@ -63,12 +61,15 @@ impl Fuzzer {
             Extent::Fixed => folder.join("fixed").join(name),
             Extent::For(_) => folder.join("corpus").join(name),
         };
-        if matches!(extent, Extent::Fixed) && corpus.exists() {
-            fs::remove_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
+        if matches!(extent, Extent::Fixed) {
+            remove(&corpus)?;
         }
-        fs::create_dir_all(&corpus).map_err(|error| explain(&corpus, error))?;
-        let mut command = Command::new(programs.join(name));
-        command.arg(&corpus);
+        let found = folder.join("found");
+        for folder in [&corpus, &found] {
+            fs::create_dir_all(folder).map_err(|error| explain(folder, error))?;
+        }
+        let mut command = Command::new(programs.join("fuzz"));
+        command.env("TARGET", name).arg(&corpus);
         match name {
             "scene_text" => drop(command.arg(root().join("scenes"))),
             "scenario" => drop(command.arg(root().join("hil-sim/scenarios"))),
@@ -77,8 +78,6 @@ impl Fuzzer {
                 run(&format!("seeds of {name}"), Command::new(seeds).arg(name).arg(&corpus))?;
             }
         }
-        let found = folder.join("found");
-        fs::create_dir_all(&found).map_err(|error| explain(&found, error))?;
         command.arg(format!("-artifact_prefix={}/{name}-", found.display()));
         command.arg(format!("-timeout={}", INPUT_MAX.as_secs()));
         match extent {
@@ -95,7 +94,7 @@ impl Fuzzer {
     /// Waits until it ends, and prints how many inputs it has tried.
     fn end(mut self) -> Result<(), String> {
         let status = self.process.wait().map_err(|error| format!("{}: {error}", self.name))?;
-        let said = fs::read(&self.log).map_err(|error| format!("{}: {error}", self.log.display()))?;
+        let said = bytes(&self.log)?;
         let said = String::from_utf8_lossy(&said);
         let last =
             said.lines().rev().find(|line| line.starts_with("Done ")).unwrap_or("no line says how much was done");
@@ -103,13 +102,8 @@ impl Fuzzer {
         if status.success() {
             return Ok(());
         }
-        let end: Vec<&str> = said.lines().rev().take(30).collect();
-        let end: Vec<&str> = end.into_iter().rev().collect();
-        Err(format!(
-            "the fuzz target {} failed ({status}); {} says:\n{}",
-            self.name,
-            self.log.display(),
-            end.join("\n")
-        ))
+        let lines: Vec<&str> = said.lines().collect();
+        let end = lines[lines.len().saturating_sub(30)..].join("\n");
+        Err(format!("the fuzz target {} failed ({status}); {} says:\n{end}", self.name, self.log.display()))
     }
 }

@@ -5,11 +5,10 @@ mod schematic;
 mod tests;
 
 use std::fmt::Write;
-use std::fs;
 
 use serde::Deserialize;
 
-use crate::command::root;
+use crate::command::{self, root};
 
 const CARRIER: &str = "hardware/carrier.toml";
 const PAGE: &str = "docs/board/wiring.md";
@@ -133,14 +132,13 @@ struct Current {
 pub(crate) fn write() -> Result<(), String> {
     let carrier = read()?;
     for (name, content) in [(PAGE, page(&carrier)), (SCHEMATIC, schematic::draw(&carrier))] {
-        fs::write(root().join(name), content).map_err(|error| format!("{name}: {error}"))?;
+        command::write(&root().join(name), content)?;
     }
     Ok(())
 }
 
 fn read() -> Result<Carrier, String> {
-    let text = fs::read_to_string(root().join(CARRIER)).map_err(|error| format!("{CARRIER}: {error}"))?;
-    toml::from_str(&text).map_err(|error| format!("{CARRIER}: {error}"))
+    toml::from_str(&command::text(&root().join(CARRIER))?).map_err(|error| format!("{CARRIER}: {error}"))
 }
 
 /// Connector and number of a position, by which positions are in order. The only connector of a board is number 0.

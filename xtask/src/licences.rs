@@ -2,10 +2,9 @@
 //! crates inside of programs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::command::{WASM, cargo_in, root, text_of};
+use crate::command::{self, WASM, cargo_in, entries, root, text_of};
 
 /// A program that crates are compiled into.
 #[derive(Clone, Copy)]
@@ -31,7 +30,7 @@ const BSD: &str = "BSD-3-Clause";
 const BSD_COPYRIGHT: &str = "Copyright (c) Raspberry Pi (Trading) Ltd.";
 const BSD_TEXT: &str = include_str!("bsd-3-clause.txt");
 /// frixel's own licences, and those of the vendored scripts.
-pub(crate) const FILES: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "host/studio/vendor/LICENCES.txt"];
+const FILES: [&str; 3] = ["LICENSE-MIT", "LICENSE-APACHE", "host/studio/vendor/LICENCES.txt"];
 /// A line between two licences.
 const RULE: &str = "------------------------------------------------------------------------------";
 /// How the names of licence files begin, in lower case.
@@ -141,25 +140,16 @@ fn texts(folder: &Path) -> Result<Vec<String>, String> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         FILE_STARTS.iter().any(|start| name.starts_with(start))
     };
-    let found: Vec<PathBuf> = paths(folder)?.into_iter().filter(named).collect();
+    let found: Vec<PathBuf> = entries(folder)?.into_iter().filter(named).collect();
     let mut files: Vec<PathBuf> = found.iter().filter(|path| path.is_file()).cloned().collect();
     for below in found.iter().filter(|path| path.is_dir()) {
-        files.extend(paths(below)?);
+        files.extend(entries(below)?);
     }
     files.iter().map(|path| read(path)).collect()
 }
 
-/// What a folder contains, sorted.
-fn paths(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.sort();
-    Ok(paths)
-}
-
 fn read(path: &Path) -> Result<String, String> {
-    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    Ok(text.trim().to_owned())
+    Ok(command::text(path)?.trim().to_owned())
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! Folders of the build machine, which must not appear in distributed files.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{absolute, root, text_of};
+use crate::command::{absolute, bytes, root, text_of};
 
 /// Divides the flags in the variable below, so that they may have spaces.
 const BETWEEN_FLAGS: char = '\x1f';
@@ -14,40 +13,34 @@ const FLAGS: &str = "CARGO_ENCODED_RUSTFLAGS";
 /// Flags that cargo would ignore in favour of those above.
 const OTHER_FLAGS: &str = "RUSTFLAGS";
 
-/// A folder, and the name that programs have in its place.
-struct MachinePath {
-    path: PathBuf,
-    name: &'static str,
-}
-
 /// The folders that a compiler writes into programs: that of the compiler with the standard library, that of the
-/// crates, and the checkout. One that is in another comes behind it.
-fn machine_paths() -> Result<Vec<MachinePath>, String> {
+/// crates, and the checkout. One that is in another comes behind it. Each has the name that programs have in its place.
+fn machine_paths() -> Result<Vec<(PathBuf, &'static str)>, String> {
     let sysroot = text_of(Command::new("rustc").current_dir(root()).args(["--print", "sysroot"]))?;
     let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
     let checkout = absolute(&root())?;
     let mut paths = vec![
-        MachinePath { path: sysroot.trim().into(), name: "rust" },
-        MachinePath { path: cargo_home.ok_or("neither CARGO_HOME nor a home folder is known")?, name: "cargo" },
-        MachinePath { path: checkout, name: "frixel" },
+        (sysroot.trim().into(), "rust"),
+        (cargo_home.ok_or("neither CARGO_HOME nor a home folder is known")?, "cargo"),
+        (checkout, "frixel"),
     ];
-    paths.sort_by_key(|machine| machine.path.as_os_str().len());
+    paths.sort_by_key(|(path, _)| path.as_os_str().len());
     Ok(paths)
 }
 
 /// Makes a build, by cargo or by a program that calls it, write other names in place of the machine's paths.
 pub(crate) fn left_out(build: &mut Command) -> Result<&mut Command, String> {
     // The compiler takes the last one that fits.
-    let of = |MachinePath { path, name }: &MachinePath| format!("--remap-path-prefix={}={name}", path.display());
-    let flags: Vec<String> = machine_paths()?.iter().map(of).collect();
+    let paths = machine_paths()?.into_iter();
+    let flags: Vec<String> =
+        paths.map(|(path, name)| format!("--remap-path-prefix={}={name}", path.display())).collect();
     Ok(build.env(FLAGS, flags.join(&BETWEEN_FLAGS.to_string())).env_remove(OTHER_FLAGS))
 }
 
 /// Fails if a file names one of the machine's paths.
 pub(crate) fn check(file: &Path) -> Result<(), String> {
-    let bytes = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
-    let paths: Vec<PathBuf> = machine_paths()?.into_iter().map(|machine| machine.path).collect();
-    match first_of(&paths, &bytes) {
+    let paths: Vec<PathBuf> = machine_paths()?.into_iter().map(|(path, _)| path).collect();
+    match first_of(&paths, &bytes(file)?) {
         Some(found) => Err(format!("{} names a path of this machine: {found}", file.display())),
         None => Ok(()),
     }
@@ -78,8 +71,7 @@ mod tests {
 
     #[test]
     fn the_checkout_and_the_crates_are_paths_of_the_machine() {
-        let text_of = |paths: Vec<MachinePath>| paths.iter().map(|found| found.name).collect::<Vec<_>>();
-        let mut names = text_of(machine_paths().unwrap());
+        let mut names: Vec<&str> = machine_paths().unwrap().into_iter().map(|(_, name)| name).collect();
         names.sort_unstable();
         assert_eq!(names, ["cargo", "frixel", "rust"]);
         assert!(check(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml").as_path()).is_ok());

@@ -2,12 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::fs;
 
 use serde_json::Value;
 
 use crate::bench::{COMMITTED, Figures};
-use crate::command::root;
+use crate::command::{self, root};
 
 const PAGE: &str = "docs/inside/numbers.md";
 /// Lines before and behind what is generated.
@@ -91,9 +90,7 @@ const TABLES: [Table; 4] = [
 
 /// Writes the generated part of the page anew.
 pub(crate) fn write() -> Result<(), String> {
-    let path = root().join(PAGE);
-    let page = read(PAGE)?;
-    fs::write(&path, replaced(&page, &generated(&committed()?)?)?).map_err(|error| format!("{PAGE}: {error}"))
+    command::write(&root().join(PAGE), replaced(&read(PAGE)?, &generated(&committed()?)?)?)
 }
 
 /// Reciprocal of the relative tolerance of a count, 0.2 %: code placement moves means of long steps by 0.03 %.
@@ -113,7 +110,7 @@ pub(crate) fn check(measured: &Figures) -> Result<(), String> {
 
 fn differences(measured: &Figures, committed: &BTreeMap<String, Value>) -> Result<(), Vec<String>> {
     let difference = |name: &str| {
-        let (measured, committed) = (measured.get(name), committed.get(name).and_then(Value::as_u64));
+        let (measured, committed) = (measured.get(name).copied(), committed.get(name).and_then(Value::as_u64));
         let text = |figure: Option<u64>| figure.map_or("none".to_owned(), |figure| figure.to_string());
         let is_near =
             |(measured, committed): (u64, u64)| measured.abs_diff(committed) <= committed / TOLERANCE_RECIPROCAL;
@@ -121,7 +118,7 @@ fn differences(measured: &Figures, committed: &BTreeMap<String, Value>) -> Resul
         (!holds).then(|| format!("{name}: measured {}, committed {}", text(measured), text(committed)))
     };
     let is_count = |name: &&str| ![".flash_", ".ram_", ".stack"].iter().any(|bytes| name.contains(bytes));
-    let names: BTreeSet<&str> = measured.names().chain(committed.keys().map(String::as_str)).collect();
+    let names: BTreeSet<&str> = measured.keys().chain(committed.keys()).map(String::as_str).collect();
     let found: Vec<String> =
         names.into_iter().filter(|name| *name != "date" && is_count(name)).filter_map(difference).collect();
     if found.is_empty() { Ok(()) } else { Err(found) }
@@ -132,7 +129,7 @@ fn committed() -> Result<BTreeMap<String, Value>, String> {
 }
 
 fn read(path: &str) -> Result<String, String> {
-    fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}"))
+    command::text(&root().join(path))
 }
 
 /// The page with another generated part.
@@ -195,12 +192,14 @@ mod tests {
     #[test]
     fn a_figure_that_is_not_the_committed_one_is_named() {
         let committed = BTreeMap::from([("a".to_owned(), 1.into()), ("b".to_owned(), 2.into())]);
-        let gone = differences(&Figures::from([("a", 1)]), &committed);
+        let figures =
+            |figures: &[(&str, u64)]| figures.iter().map(|(name, found)| ((*name).to_owned(), *found)).collect();
+        let gone = differences(&figures(&[("a", 1)]), &committed);
         assert_eq!(gone, Err(vec!["b: measured none, committed 2".into()]));
         let long = BTreeMap::from([("step".to_owned(), 6_000.into())]);
-        assert_eq!(differences(&Figures::from([("step", 6_012)]), &long), Ok(()));
-        assert!(differences(&Figures::from([("step", 6_013)]), &long).is_err());
-        let found = differences(&Figures::from([("a", 1), ("b", 3), ("c", 4)]), &committed);
+        assert_eq!(differences(&figures(&[("step", 6_012)]), &long), Ok(()));
+        assert!(differences(&figures(&[("step", 6_013)]), &long).is_err());
+        let found = differences(&figures(&[("a", 1), ("b", 3), ("c", 4)]), &committed);
         assert_eq!(found, Err(vec!["b: measured 3, committed 2".into(), "c: measured 4, committed none".into()]));
     }
 

@@ -1,10 +1,8 @@
 //! The crates that others use, as cargo would publish them.
 
-use std::fs;
-
 use serde_json::Value;
 
-use crate::command::{cargo_in, run, target_folder, text_of};
+use crate::command::{cargo_in, remove, run, target_folder, text_of};
 
 /// Packages every published crate, and compiles each from its package alone, with the others from theirs.
 pub(crate) fn check() -> Result<(), String> {
@@ -17,35 +15,27 @@ pub(crate) fn check() -> Result<(), String> {
     // What is checked is the working tree, committed or not.
     package.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&target).args(names);
     let checked = run("packages", &mut package);
-    fs::remove_dir_all(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+    remove(&target)?;
     checked
 }
 
-/// The manifests of the crates that are published.
+/// The manifests of the crates that are published, as cargo reports them.
 fn published() -> Result<Vec<Value>, String> {
-    Ok(packages()?.into_iter().filter(is_published).collect())
-}
-
-/// The manifests of the workspace, as cargo reports them.
-fn packages() -> Result<Vec<Value>, String> {
     let metadata = text_of(cargo_in(".").args(["metadata", "--locked", "--no-deps", "--format-version", "1"]))?;
     let metadata: Value = serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
     let packages = metadata["packages"].as_array().ok_or("cargo metadata names no packages")?;
-    Ok(packages.clone())
-}
-
-/// `publish = false` is an empty list of registries.
-fn is_published(manifest: &Value) -> bool {
-    manifest["publish"].as_array().is_none_or(|registries| !registries.is_empty())
+    // `publish = false` is an empty list of registries.
+    let is_published = |manifest: &&Value| manifest["publish"].as_array().is_none_or(|to| !to.is_empty());
+    Ok(packages.iter().filter(is_published).cloned().collect())
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
     use std::path::{Component, Path, PathBuf};
 
     use super::*;
-    use crate::command::root;
-    use crate::test_files::files_below;
+    use crate::command::{files_below, root};
 
     fn name(manifest: &Value) -> &str {
         manifest["name"].as_str().unwrap()
@@ -97,10 +87,8 @@ mod tests {
     fn a_published_crate_includes_only_files_of_its_own() {
         let mut included = 0;
         for package in published().unwrap() {
-            let source = folder(&package).join("src");
-            let mut files = Vec::new();
-            files_below(&source, "rs", &mut files);
-            for file in files.iter().filter(|file| !is_test(file)) {
+            let files = files_below(&folder(&package).join("src")).unwrap();
+            for file in files.iter().filter(|file| file.extension().is_some_and(|end| end == "rs") && !is_test(file)) {
                 let text = fs::read_to_string(file).unwrap();
                 for part in text.split("include_").skip(1).filter_map(|part| part.split_once("!(\"")) {
                     let path = part.1.split('"').next().unwrap();

@@ -1,11 +1,10 @@
 //! The programs that run the Pico's image in an emulator (`hil-sim/pico`): lints and tests of their own, and what
 //! `cargo xtask dist` hands on of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{absolute, root, run};
+use crate::command::{absolute, copy, entries, files_below, root, run, text};
 use crate::studio_tests::install;
 
 const FOLDER: &str = "hil-sim/pico";
@@ -35,16 +34,14 @@ pub(crate) fn test_scripts() -> Result<(), String> {
 /// Copies the programs and the emulator.
 pub(crate) fn copy_to(target: &Path) -> Result<(), String> {
     install(&folder())?;
-    for entry in fs::read_dir(folder()).map_err(|error| format!("{FOLDER}: {error}"))? {
-        let path = entry.map_err(|error| format!("{FOLDER}: {error}"))?.path();
-        if path.extension().is_some_and(|extension| extension == "mjs") {
-            copy_into(&path, target)?;
-        }
+    let copied = |name: &Path| copy(&folder().join(name), &target.join(name));
+    for program in entries(&folder())?.iter().filter(|path| path.extension().is_some_and(|ending| ending == "mjs")) {
+        copied(Path::new(program.file_name().unwrap_or_default()))?;
     }
     for part in EMULATOR_PARTS {
-        let from = folder().join(EMULATOR).join(part);
-        let to = target.join(EMULATOR).join(part);
-        copy_into(&from, to.parent().unwrap_or(target))?;
+        let path = folder().join(EMULATOR).join(part);
+        let files = if path.is_dir() { files_below(&path)? } else { vec![path] };
+        files.iter().try_for_each(|file| copied(file.strip_prefix(folder()).unwrap_or(file)))?;
     }
     Ok(())
 }
@@ -52,23 +49,5 @@ pub(crate) fn copy_to(target: &Path) -> Result<(), String> {
 /// The licence of the emulator.
 pub(crate) fn licence() -> Result<String, String> {
     install(&folder())?;
-    let path = folder().join(EMULATOR).join("LICENSE");
-    fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-/// Copies a file, or a folder with all that is in it, into a folder, which is made if necessary.
-fn copy_into(from: &Path, folder: &Path) -> Result<(), String> {
-    let explain = |path: &Path| {
-        let path = path.display().to_string();
-        move |error: std::io::Error| format!("{path}: {error}")
-    };
-    let to = folder.join(from.file_name().unwrap_or_default());
-    fs::create_dir_all(folder).map_err(explain(folder))?;
-    if !from.is_dir() {
-        return fs::copy(from, &to).map(drop).map_err(explain(from));
-    }
-    for entry in fs::read_dir(from).map_err(explain(from))? {
-        copy_into(&entry.map_err(explain(from))?.path(), &to)?;
-    }
-    Ok(())
+    text(&folder().join(EMULATOR).join("LICENSE"))
 }

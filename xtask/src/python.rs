@@ -1,28 +1,20 @@
 //! The checks of the Python module: its wheel, built and installed into a fresh virtual environment, with types, lints,
 //! tests and examples. The tests of its widget run in the studio's Chromium.
 
-use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, absolute, root, run, target_folder};
-use crate::needs::Need;
+use crate::command::{absolute, entries, remove, root, run, target_folder};
 use crate::{ci, studio, studio_tests};
 
 /// The folder of the module.
 const FOLDER: &str = "host/python";
-/// What the checks need: that of the studio's tests, and Python.
-pub(crate) const NEEDS: [Need; 5] = [Need::Python, Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 
 /// Builds the wheel, installs it into a fresh virtual environment, and checks it there.
 pub(crate) fn check() -> Result<(), String> {
     let target = absolute(&target_folder())?.join("python");
     let (environment, wheels) = (target.join("environment"), target.join("wheels"));
-    for made_before in [&environment, &wheels] {
-        if made_before.exists() {
-            fs::remove_dir_all(made_before).map_err(|error| format!("{}: {error}", made_before.display()))?;
-        }
-    }
+    remove(&environment)?;
+    remove(&wheels)?;
     let in_environment = |program: &str| {
         let mut command = Command::new(environment.join("bin").join(program));
         command.current_dir(root().join(FOLDER)).env("CARGO_TARGET_DIR", &target);
@@ -38,22 +30,12 @@ pub(crate) fn check() -> Result<(), String> {
     let page = studio::build()?;
     let build = ["build", "--quiet", "--locked", "--profile", "wheel", "--out"];
     run("wheel", in_environment("maturin").args(build).arg(&wheels))?;
-    let wheel = only_file(&wheels)?;
-    run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).arg(wheel))?;
+    let wheels = entries(&wheels)?;
+    run("installation", in_environment("pip").args(install).args(["--no-index", "--no-deps"]).args(wheels))?;
     run("types", in_environment("mypy").args(["--package", "frixel"]))?;
     run("types of tests", in_environment("mypy").args(["tests", "examples"]))?;
     let frixel = ci::command()?;
     studio_tests::install(&studio_tests::folder())?;
     let mut tests = in_environment("pytest");
     run("tests of the Python module", tests.arg("--quiet").env("FRIXEL", frixel).env("STUDIO_PAGE", page))
-}
-
-/// The one file in a folder.
-fn only_file(folder: &Path) -> Result<PathBuf, String> {
-    let explain = |error: std::io::Error| format!("{}: {error}", folder.display());
-    let mut files = fs::read_dir(folder).map_err(explain)?;
-    match (files.next(), files.next()) {
-        (Some(Ok(file)), None) => Ok(file.path()),
-        _ => Err(format!("{}: expected one wheel", folder.display())),
-    }
 }

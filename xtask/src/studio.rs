@@ -9,7 +9,6 @@ mod page;
 mod site;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -21,17 +20,17 @@ use base64::engine::general_purpose::STANDARD;
 use page::Place;
 pub(crate) use site::build as build_site;
 
-use crate::command::{WASM, absolute, cargo_in, root, run, target_folder, text_of};
+use crate::command::{self, WASM, absolute, bytes, cargo_in, entries, root, run, target_folder, text, text_of};
 use crate::{licences, machine_paths};
 
 /// Cargo profile of the module: small, fast, and without debug information.
-pub(crate) const PROFILE: &str = "studio";
+const PROFILE: &str = "studio";
 /// Iterations of the compression: 15 take three times as long, for 0.01 % of the size.
 const ITERATIONS: NonZeroU64 = NonZeroU64::new(5).unwrap();
 /// Largest size of the page.
 const PAGE_MAX_LEN: usize = 2_000_000;
 /// Files of the repository that the page carries, beside its modules: folder, ending, and folder in the page.
-pub(crate) const CARRIED: [(&str, &str, &str); 9] = [
+const CARRIED: [(&str, &str, &str); 9] = [
     ("host/studio/web", "js", ""),
     ("host/studio/vendor", "js", "vendor/"),
     ("docs/design", "json", "docs/design/"),
@@ -62,10 +61,8 @@ pub(crate) fn build() -> Result<PathBuf, String> {
         return Err(format!("the page has {} bytes, more than the {PAGE_MAX_LEN} that it may have", page.len()));
     }
     let path = target_folder().join("studio/frixel-studio.html");
-    let folder = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     write(&path, page)?;
-    write(&folder.join("frixel-scene.js"), element::script(&files)?)?;
+    write(&path.with_file_name("frixel-scene.js"), element::script(&files)?)?;
     write(&root().join(WIDGET_MODULE), element::script_without_pictures(&files)? + &text(&root().join(WIDGET))?)?;
     absolute(&path)
 }
@@ -101,12 +98,7 @@ fn module() -> Result<Vec<u8>, String> {
 
 /// Adds the files of a folder with this ending, and of the folders below if `is_deep`.
 fn collect(folder: &Path, ending: &str, prefix: &str, is_deep: bool, files: &mut Files) -> Result<(), String> {
-    if !folder.is_dir() {
-        return Ok(());
-    }
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    for entry in entries {
-        let path = entry.map_err(|error| format!("{}: {error}", folder.display()))?.path();
+    for path in entries(folder)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if IGNORED.contains(&name.as_str()) {
             continue;
@@ -150,17 +142,9 @@ fn packed(content: &[u8]) -> Result<String, String> {
     Ok(packed)
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-fn text(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
 /// Writes a file, and says how large it is.
 fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), String> {
-    fs::write(path, &content).map_err(|error| format!("{}: {error}", path.display()))?;
+    command::write(path, &content)?;
     eprintln!("{}: {} bytes", path.display(), content.as_ref().len());
     Ok(())
 }

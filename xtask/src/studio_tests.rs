@@ -5,14 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::command::{WASM, absolute, root, run, target_folder, text_of};
-use crate::needs::{self, Need};
-use crate::{ci, pico_rig, studio};
+use crate::command::{absolute, entries, remove, root, run, target_folder, text_of, write};
+use crate::{ci, needs, pico_rig, studio};
 
-/// What types and lints need.
-pub(crate) const SCRIPT_NEEDS: [Need; 2] = [Need::Node, Need::Npm];
-/// What the tests need.
-pub(crate) const NEEDS: [Need; 4] = [Need::Target(WASM), Need::Node, Need::Npm, Need::Chromium];
 /// Examples of `frixel-studio`: the hashes of the gallery, and a virtual board that says it is real.
 const HASHES: &str = "seeded_hashes";
 const REAL_BOARD: &str = "real_board";
@@ -35,13 +30,13 @@ pub(crate) fn check_scripts() -> Result<(), String> {
 
 /// Builds the page, and runs the tests in it.
 pub(crate) fn run_page() -> Result<(), String> {
-    let tests = tests()?;
     let mut runner = runner()?;
     let hashes = target_folder().join("studio/hashes.json");
     let computed = text_of(&mut Command::new(built(&format!("examples/{HASHES}"))?))?;
-    fs::write(&hashes, computed).map_err(|error| format!("{}: {error}", hashes.display()))?;
+    write(&hashes, computed)?;
     runner.env("STUDIO_HASHES", absolute(&hashes)?).env("STUDIO_SITE", site()?);
-    run("studio in a browser", runner.args(tests))
+    let is_test = |path: &PathBuf| path.to_string_lossy().ends_with(".test.mjs");
+    run("studio in a browser", runner.args(entries(&folder())?.into_iter().filter(is_test)))
 }
 
 /// Builds the site, and opens it in Firefox.
@@ -57,9 +52,7 @@ pub(crate) fn run_in_firefox() -> Result<(), String> {
 /// Builds the site anew, and returns its folder.
 fn site() -> Result<PathBuf, String> {
     let site = target_folder().join("studio/site");
-    if site.exists() {
-        fs::remove_dir_all(&site).map_err(|error| format!("{}: {error}", site.display()))?;
-    }
+    remove(&site)?;
     studio::build_site(&site.to_string_lossy(), None)?;
     absolute(&site)
 }
@@ -100,16 +93,6 @@ pub(crate) fn install(folder: &Path) -> Result<(), String> {
         return Ok(());
     }
     run("node packages", Command::new("npm").current_dir(folder).args(["ci", "--no-audit", "--no-fund"]))
-}
-
-/// The names of the test files, sorted.
-fn tests() -> Result<Vec<String>, String> {
-    let folder = folder();
-    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names: Vec<String> = names.filter(|name| name.ends_with(".test.mjs")).collect();
-    names.sort();
-    Ok(names)
 }
 
 /// A program of the test build.

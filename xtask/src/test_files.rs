@@ -3,8 +3,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use crate::command::root;
+use crate::command::{root, text_of};
 
 /// The folders of the workspace's packages.
 fn packages() -> Vec<PathBuf> {
@@ -14,21 +15,17 @@ fn packages() -> Vec<PathBuf> {
     members.map(|folder| root().join(folder.as_str().unwrap())).collect()
 }
 
-/// Adds the files below a folder that have this ending, build artefacts apart.
-pub(crate) fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
-        if path.is_dir() && !is_built {
-            files_below(&path, ending, found);
-        } else if path.extension().is_some_and(|found| found == ending) {
-            found.push(path);
-        }
-    }
+/// The files of the repository that match a pattern of git.
+fn files(pattern: &str) -> Vec<PathBuf> {
+    let mut git = Command::new("git");
+    git.current_dir(root()).args(["ls-files", "--cached", "--others", "--exclude-standard", pattern]);
+    let files = text_of(&mut git).unwrap();
+    files.lines().map(|file| root().join(file)).filter(|file| file.is_file()).collect()
 }
 
 #[test]
 fn every_file_of_tests_belongs_to_a_test_program() {
+    let sources = files("*.rs");
     for folder in packages() {
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
         let manifest: toml::Table = toml::from_str(&manifest).unwrap();
@@ -38,9 +35,8 @@ fn every_file_of_tests_belongs_to_a_test_program() {
         let programs = manifest["test"].as_array().unwrap().iter();
         let programs: Vec<PathBuf> = programs.map(|test| folder.join(test["path"].as_str().unwrap())).collect();
         let modules: Vec<PathBuf> = programs.iter().flat_map(|program| modules_of(program)).collect();
-        let mut files = Vec::new();
-        files_below(&folder.join("tests"), "rs", &mut files);
-        for file in files.iter().filter(|file| !programs.contains(file)) {
+        let is_test = |file: &PathBuf| file.starts_with(folder.join("tests")) && !programs.contains(file);
+        for file in sources.iter().filter(|file| is_test(file)) {
             assert!(modules.contains(file), "{} is in no test program: name it in main.rs", file.display());
         }
     }
@@ -76,9 +72,8 @@ const TOPS: [&str; 8] = ["docs", "firmware", "fuzz", "hardware", "hil-sim", "hos
 
 /// The documents of the repository, and their texts: no texts that tests compare, nothing that others wrote.
 fn pages() -> Vec<(PathBuf, String)> {
-    let mut files = Vec::new();
-    files_below(&root(), "md", &mut files);
-    files.retain(|file| !file.iter().any(|part| ["corpus", "target", ".venv"].iter().any(|name| part == *name)));
+    let mut files = files("*.md");
+    files.retain(|file| !file.iter().any(|part| part == "corpus"));
     files.into_iter().map(|file| (file.clone(), fs::read_to_string(file).unwrap())).collect()
 }
 
@@ -105,10 +100,7 @@ fn every_source_that_the_architecture_names_exists() {
     let page = fs::read_to_string(root().join("docs/inside/architecture.md")).unwrap();
     let mut count = 0;
     for ending in ["rs", "mjs", "js", "ts", "py"] {
-        let mut files = Vec::new();
-        for top in TOPS {
-            files_below(&root().join(top), ending, &mut files);
-        }
+        let files = files(&format!("*.{ending}"));
         let is_name = |name: &&str| name.ends_with(&format!(".{ending}")) && !name.contains(['*', ' ', '\n']);
         for name in page.split('`').filter(is_name).filter(|name| !name.contains("KIND")) {
             assert!(

@@ -81,11 +81,6 @@ fn from_fixed_table(table: &mut FixedTable<4>, friction: u32) -> u32 {
 
 #[inline(never)]
 fn from_table(table: &mut InverseTable, electric_friction_n: f32) -> f32 {
-    if cfg!(feature = "breach") {
-        for loops in 0..100 {
-            black_box(loops);
-        }
-    }
     table.voltage_v_rms(electric_friction_n)
 }
 

@@ -3,31 +3,20 @@
 use core::array;
 
 use frixel_layers::cost;
-use frixel_layers::{
-    Bitmap, Blend, Constant, Grating, Header, Layer, Point, Record, Region, Speed, Stream, Wave, Waveform,
-};
+use frixel_layers::{Blend, Constant, Header, Layer, Point, Record, Region, Speed, Stream, Wave, Waveform};
 use frixel_wire::hello::{BoardLimits, Core};
 use frixel_wire::message::Command;
 use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
-use frixel_testkit::samples::{CostCase, samples, with_picture};
+use frixel_testkit::samples::{AROUND, CostCase, bitmap_to_count, grating_to_count, samples, with_picture};
 use frixel_testkit::{HEADER, SceneBytes, scene_with_points};
 
 use crate::tick::Bench;
 
-pub(crate) const GRATING: Layer = Layer::Grating(Grating {
-    wave: Wave::Sine,
-    cycles_per_m_x: 500.0,
-    cycles_per_m_y: 100.0,
-    phase_turns: 0.2,
-    trough_n: 0.0,
-    crest_n: 0.026,
-    drift_hz: 0.0,
-});
+pub(crate) const GRATING: Layer = grating_to_count(Wave::Sine, 0.0);
 
-const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
 const STREAM: Layer = Layer::Stream(Stream { low_n: 0.001, high_n: 0.02 });
 /// The part of the screen where the finger is. Layers that are away from the finger are outside it.
 const UPPER_PART: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.06 };
@@ -63,17 +52,7 @@ pub(crate) fn largest_scene() -> SceneBytes {
 
 /// A picture over the screen.
 pub(crate) const fn bitmap(crc32: u32) -> Layer {
-    Layer::Bitmap(Bitmap {
-        crc32,
-        x_m: 0.01,
-        y_m: 0.0,
-        pitch_m: 1e-3,
-        black_n: 0.0,
-        white_n: 0.026,
-        pitch_y_m: 1e-3,
-        angle_turns: 0.0,
-        tiled: false,
-    })
+    with_picture(bitmap_to_count(false), crc32)
 }
 
 /// A layer in a region under the finger, with the most expensive blend.

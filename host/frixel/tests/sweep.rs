@@ -114,13 +114,13 @@ fn the_result_of_another_cell_and_a_changed_one_are_refused() {
     let text = fs::read_to_string(one).unwrap();
     fs::copy(other, one).unwrap();
     let error = folder.run("sweep merge study").unwrap_err();
-    assert!(error.contains("is no result of a cell (it is that of the cell "), "{error}");
+    assert!(error.contains("is not a result of a cell (it is that of the cell "), "{error}");
     fs::write(one, text.replacen("plate", "plain", 1)).unwrap();
     let error = folder.run("sweep merge study").unwrap_err();
     assert!(error.contains("its content has another hash than it says"), "{error}");
     fs::write(one, "{").unwrap();
     let error = folder.run("sweep merge study").unwrap_err();
-    assert!(error.contains("is no result of a cell") && error.contains("delete it"), "{error}");
+    assert!(error.contains("is not a result of a cell") && error.contains("delete it"), "{error}");
     fs::write(one, text).unwrap();
     folder.run("sweep merge study").unwrap();
 }

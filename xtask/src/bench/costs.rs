@@ -2,11 +2,10 @@
 //! checked against them.
 
 use std::fmt::Write;
-use std::fs;
 
 use super::Figures;
 use super::figures::CYCLES;
-use crate::command::root;
+use crate::command::{root, text, write};
 
 const PATH: &str = "firmware/layers/src/measured.rs";
 
@@ -50,16 +49,13 @@ struct Costs {
 
 /// Regenerates the file.
 pub(crate) fn bless(figures: &Figures) -> Result<(), String> {
-    let path = root().join(PATH);
-    fs::write(&path, text(&costs(figures, &M4F)?, &costs(figures, &M0_PLUS)?))
-        .map_err(|error| format!("{}: {error}", path.display()))
+    write(&root().join(PATH), measured(figures)?)
 }
 
 /// Fails if a cost in the file differs from the measurement. The error lists the differences.
 pub(crate) fn check(figures: &Figures) -> Result<(), String> {
-    let path = root().join(PATH);
-    let found = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let measured = text(&costs(figures, &M4F)?, &costs(figures, &M0_PLUS)?);
+    let found = text(&root().join(PATH))?;
+    let measured = measured(figures)?;
     if found == measured {
         return Ok(());
     }
@@ -68,6 +64,11 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
         "{PATH} is not what was measured; `FRIXEL_BLESS=1 cargo xtask bench` writes it anew: {}",
         drifted.join(" ")
     ))
+}
+
+/// The file.
+fn measured(figures: &Figures) -> Result<String, String> {
+    Ok(file(&costs(figures, &M4F)?, &costs(figures, &M0_PLUS)?))
 }
 
 /// Suffix of the names of ticks that are counted only to find the cost of a layer.
@@ -94,7 +95,7 @@ fn costs(figures: &Figures, core: &Measured) -> Result<Costs, String> {
     let alone = |name: &str| tick(&format!("{name}{ALONE}")).map(|core_cycles| core_cycles.saturating_sub(base));
     let stream_elsewhere = tick("stream_elsewhere")?.saturating_sub(tick("constant_alone")?);
     let end = format!("{ALONE}{}", core.quantity);
-    let counted = figures.names().filter_map(|name| name.strip_prefix(core.tick)?.strip_suffix(&end));
+    let counted = figures.keys().filter_map(|name| name.strip_prefix(core.tick)?.strip_suffix(&end));
     let layer = |name: &str| {
         let cost = alone(name)?;
         Ok(match name.split_once(OVER) {
@@ -141,7 +142,7 @@ fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64
     (at_few.saturating_sub(few * each).max(at_many.saturating_sub(many * each)), each)
 }
 
-fn text(m4f: &Costs, m0_plus: &Costs) -> String {
+fn file(m4f: &Costs, m0_plus: &Costs) -> String {
     let mut text = String::from(
         "//! Core cycles on a Cortex-M4F and on a Cortex-M0+ at the worst input, estimated. Written by\n\
          //! `FRIXEL_BLESS=1 cargo xtask bench`; `cargo xtask ci budgets` measures again and fails when it finds others.\n\
@@ -181,7 +182,7 @@ mod tests {
         let mut figures = Figures::default();
         while let Err(missing) = costs(&figures, &M4F).and_then(|_| costs(&figures, &M0_PLUS)) {
             let name = missing.strip_suffix(" was not measured").expect("a figure is missing");
-            figures.put(name.to_owned(), 1_000);
+            figures.insert(name.to_owned(), 1_000);
         }
         figures
     }
@@ -189,12 +190,12 @@ mod tests {
     #[test]
     fn a_layer_that_was_counted_has_a_cost_and_a_part_is_no_layer() {
         let mut figures = complete();
-        figures.put("m4f.tick_dots_alone_cycles".to_owned(), 1_600);
-        figures.put("m4f.tick_stars_over_dots_alone_cycles".to_owned(), 1_650);
+        figures.insert("m4f.tick_dots_alone_cycles".to_owned(), 1_600);
+        figures.insert("m4f.tick_stars_over_dots_alone_cycles".to_owned(), 1_650);
         let names = |costs: Costs| costs.layers.into_iter().map(|(name, _)| name).collect::<Vec<_>>();
         assert_eq!(names(costs(&figures, &M4F).unwrap()), ["constant", "dots", "stars"]);
-        figures.put("m0plus.tick_dots_alone".to_owned(), 6_000);
-        let text = text(&costs(&figures, &M4F).unwrap(), &costs(&figures, &M0_PLUS).unwrap());
+        figures.insert("m0plus.tick_dots_alone".to_owned(), 6_000);
+        let text = measured(&figures).unwrap();
         assert!(text.contains("(\"dots\", Cost::new(600, 7250))"), "{text}");
         assert!(text.contains("(\"stars\", Cost::new(50, 0))"), "{text}");
     }

@@ -1,7 +1,6 @@
 //! Follows the benchmark image instruction by instruction, in the manner of a debugger.
 
 use std::collections::HashMap;
-use std::fs;
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -10,6 +9,7 @@ use object::{Object, ObjectSegment, ObjectSymbol};
 
 use super::cycles::cycles;
 use super::gdb::Gdb;
+use crate::command::bytes;
 
 /// Words of the image's `nothing` that are not its frame: they were added to the timer's count.
 const NOTHING: Seen = Seen { instructions: 2, cycles: 2 };
@@ -87,7 +87,7 @@ struct Code {
 impl Code {
     fn read(image: &Path) -> Result<Self, String> {
         let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", image.display());
-        let bytes = fs::read(image).map_err(|error| explain(&error))?;
+        let bytes = bytes(image)?;
         let file = object::File::parse(&*bytes).map_err(|error| explain(&error))?;
         let mut halfwords = HashMap::new();
         for segment in file.segments() {

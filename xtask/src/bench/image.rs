@@ -28,15 +28,11 @@ pub(super) struct Count {
 }
 
 impl<'a> Image<'a> {
-    /// Builds the image. With `breach`, it deliberately exceeds its budget. It replaces the image of the same core that
-    /// was built before.
-    pub(super) fn build(core: &'a Core, breach: bool) -> Result<Self, String> {
+    /// Builds the image.
+    pub(super) fn build(core: &'a Core) -> Result<Self, String> {
         let mut command = cargo_in("firmware/bench");
         command.args(["build", "--release", "--locked", "--quiet", "--bin", "bench", "--target", core.target]);
         command.args(["--target-dir", IMAGES_TARGET_FOLDER]);
-        if breach {
-            command.args(["--features", "breach"]);
-        }
         run(&format!("benchmark for {}", core.name), &mut command)?;
         let path = root().join("firmware/bench").join(IMAGES_TARGET_FOLDER).join(core.target).join("release/bench");
         Ok(Self { core, path })
@@ -47,8 +43,8 @@ impl<'a> Image<'a> {
         let text = self.run(&[])?;
         let counts: Vec<Count> = text.lines().map(parse).collect::<Result<_, _>>()?;
         for count in &counts {
-            figures.put(self.name(count), count.instructions);
-            figures.put(self.name(count) + MEAN, count.mean);
+            figures.insert(self.name(count), count.instructions);
+            figures.insert(self.name(count) + MEAN, count.mean);
         }
         Ok(counts)
     }
@@ -80,7 +76,7 @@ impl<'a> Image<'a> {
                     seen.instructions
                 ));
             }
-            figures.put(self.name(count) + CYCLES, seen.cycles);
+            figures.insert(self.name(count) + CYCLES, seen.cycles);
         }
         Ok(())
     }

@@ -4,7 +4,6 @@
 //! the scenes that come nearest to their estimate, a debugger then follows the longest tick to compute its cycles.
 
 use std::cmp::Reverse;
-use std::fmt;
 
 use super::follow::Seen;
 use super::image::Image;
@@ -12,38 +11,12 @@ use super::{EMULATOR, M4F_CORE};
 
 /// Number of scenes per pace that are played for every change, which takes about ten seconds.
 pub(crate) const FEW: u64 = 500;
-/// Number of scenes per pace that `cargo xtask soak` plays, which takes about two minutes.
-pub(crate) const MANY: u64 = 6_000;
 /// Number of these scenes whose longest tick a debugger follows.
 const FOLLOWED: usize = 12;
 
-/// How often the touch source of a random scene reports; the image uses the same names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pace {
-    /// The usual rate of touch chips and screens.
-    Usual,
-    /// The highest rate that a host may send at.
-    Fast,
-}
-
-impl Pace {
-    /// All paces.
-    pub(crate) const ALL: [Self; 2] = [Self::Usual, Self::Fast];
-
-    /// The pace with this name.
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|pace| pace.to_string() == name)
-    }
-}
-
-impl fmt::Display for Pace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Usual => "usual",
-            Self::Fast => "fast",
-        })
-    }
-}
+/// How often the touch source of a random scene reports: at the usual rate of touch chips and screens, and at the highest
+/// that a host may send at. The image uses the same names.
+pub(crate) const PACES: [&str; 2] = ["usual", "fast"];
 
 /// The counts of one scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +32,8 @@ struct Played {
 
 /// Plays the scenes of `count` seeds, starting at `first`. Fails if a scene has a tick that takes more than its
 /// estimate.
-pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
-    let image = Image::build(&M4F_CORE, false)?;
+pub(crate) fn check(pace: &str, first: u64, count: u64) -> Result<(), String> {
+    let image = Image::build(&M4F_CORE)?;
     let mut played = play(&image, pace, first, count)?;
     played.sort_by_key(|played| Reverse(played.share()));
     let followed: Vec<(Played, Seen)> = played
@@ -73,7 +46,7 @@ pub(crate) fn check(pace: Pace, first: u64, count: u64) -> Result<(), String> {
 }
 
 /// Plays the scenes of `count` seeds, starting at `first`.
-fn play(image: &Image, pace: Pace, first: u64, count: u64) -> Result<Vec<Played>, String> {
+fn play(image: &Image, pace: &str, first: u64, count: u64) -> Result<Vec<Played>, String> {
     let played: Vec<Played> = image.run(&words(pace, first, count))?.lines().map(parse).collect::<Result<_, _>>()?;
     if played.iter().map(|played| played.seed).eq(first..first + count) {
         Ok(played)
@@ -83,7 +56,7 @@ fn play(image: &Image, pace: Pace, first: u64, count: u64) -> Result<Vec<Played>
 }
 
 /// Plays one scene on a freshly started board, and follows its longest tick.
-fn play_and_follow(image: &Image, pace: Pace, seed: u64) -> Result<(Played, Seen), String> {
+fn play_and_follow(image: &Image, pace: &str, seed: u64) -> Result<(Played, Seen), String> {
     let played = play(image, pace, seed, 1)?;
     let [played] = played.as_slice() else { return Err(format!("seed {seed} was not played")) };
     let seen = image.follow(&words(pace, seed, 1), &[played.tick])?;
@@ -92,8 +65,8 @@ fn play_and_follow(image: &Image, pace: Pace, seed: u64) -> Result<(Played, Seen
 }
 
 /// Command-line arguments that make the image play random scenes.
-fn words(pace: Pace, first: u64, count: u64) -> [String; 4] {
-    ["programs".to_owned(), pace.to_string(), first.to_string(), count.to_string()]
+fn words(pace: &str, first: u64, count: u64) -> [String; 4] {
+    ["programs".to_owned(), pace.to_owned(), first.to_string(), count.to_string()]
 }
 
 /// Describes the scene that came nearest to its estimate; fails if a scene exceeded it.

@@ -5,7 +5,6 @@
 //! resulting fault has a handler with its own stack.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
 use object::elf::STT_FUNC;
@@ -13,6 +12,7 @@ use object::read::elf::{FileHeader, Sym as _};
 use object::{Endianness, Object, ObjectSection, ObjectSymbol};
 
 use super::thumb::{Instruction, decode};
+use crate::command::bytes;
 
 /// Bytes that an exception puts on the stack, with floating-point state and alignment (Armv7-M architecture reference,
 /// B1.5.6).
@@ -48,7 +48,7 @@ impl Functions {
     /// Reads the functions of an image.
     pub(super) fn read(image: &Path) -> Result<Self, String> {
         let explain = |error: &dyn std::fmt::Display| format!("{}: {error}", image.display());
-        let bytes = fs::read(image).map_err(|error| explain(&error))?;
+        let bytes = bytes(image)?;
         let file = object::read::elf::ElfFile32::<Endianness>::parse(&*bytes).map_err(|error| explain(&error))?;
         let endian = file.elf_header().endian().map_err(|error| explain(&error))?;
         let mut functions = BTreeMap::new();
@@ -102,9 +102,7 @@ impl Functions {
 
     /// Fails if a function can end the program. The error states where.
     pub(super) fn never_ends(&self, name: &str) -> Result<(), String> {
-        let found = self.0.iter().find(|(_, function)| function.name == name);
-        let (address, _) = found.ok_or_else(|| format!("the image has no function {name}"))?;
-        let (mut open, mut seen) = (vec![*address], BTreeSet::new());
+        let (mut open, mut seen) = (vec![self.address_of(name)?], BTreeSet::new());
         while let Some(address) = open.pop() {
             let Some(function) = self.0.get(&address).filter(|_| seen.insert(address)) else { continue };
             if DIVIDES.iter().any(|divides| function.name.contains(divides)) {
@@ -120,9 +118,12 @@ impl Functions {
     }
 
     fn depth_of(&self, name: &str) -> Result<u64, String> {
+        self.from(self.address_of(name)?, &mut Vec::new(), &mut BTreeMap::new())
+    }
+
+    fn address_of(&self, name: &str) -> Result<u32, String> {
         let found = self.0.iter().find(|(_, function)| function.name == name);
-        let (address, _) = found.ok_or_else(|| format!("the image has no function {name}"))?;
-        self.from(*address, &mut Vec::new(), &mut BTreeMap::new())
+        found.map(|(address, _)| *address).ok_or_else(|| format!("the image has no function {name}"))
     }
 
     /// Depth of the stack from a function on. `path` is the chain of calls to it; `known` caches the depths computed so

@@ -6,6 +6,7 @@ mod protection;
 mod supplies;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 
 use super::*;
 

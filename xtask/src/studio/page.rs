@@ -6,8 +6,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-use super::{Files, all_packed, boot, text};
-use crate::command::root;
+use super::{Files, all_packed, boot};
+use crate::command::{root, text};
 
 const WEB: &str = "host/studio/web";
 /// The line of index.html in whose place the icon, and what else a place needs, is put.

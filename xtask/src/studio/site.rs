@@ -9,7 +9,6 @@
 //! | `manifest.webmanifest`, `icon*` | what a tablet needs to install the page |
 //! | `preview.png` | the picture that others show beside a link |
 
-use std::fs;
 use std::path::Path;
 
 use base64::Engine as _;
@@ -17,8 +16,8 @@ use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
 use super::page::{self, Place};
-use super::{Files, bytes, element, files, text};
-use crate::command::{empty_folder, root};
+use super::{Files, element, files};
+use crate::command::{bytes, empty_folder, root, text, write};
 
 const SOURCES: &str = "host/studio/site";
 pub(super) const ICON: &str = "host/studio/site/icon.svg";
@@ -47,10 +46,7 @@ pub(crate) fn build(folder: &str, address: Option<&str>) -> Result<(), String> {
     let folder = empty_folder(folder)?;
     let site = site(&files()?, address.as_deref())?;
     for (name, content) in &site {
-        let path = folder.join(name);
-        let parent = path.parent().unwrap_or(&folder);
-        fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
-        fs::write(&path, content).map_err(|error| format!("{}: {error}", path.display()))?;
+        write(&folder.join(name), content)?;
     }
     println!("{}", folder.display());
     Ok(())

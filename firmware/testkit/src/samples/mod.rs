@@ -18,6 +18,7 @@ use crate::random::Random;
 
 #[cfg(feature = "std")]
 pub use formula::{Formula, along_deg, noise, sine, turn};
+pub use of_place::{bitmap_to_count, grating_to_count};
 
 /// The data of a kind of layer for tests and benchmarks.
 pub struct Sample {
@@ -63,7 +64,7 @@ pub const POINTS: [Point; 4] = [
 ];
 
 /// The screen of a benchmark.
-const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
+pub const AROUND: Region = Region::Rectangle { x_m: 0.0, y_m: 0.0, width_m: 0.12, height_m: 0.11 };
 const RECTANGLE: Region = Region::Rectangle { x_m: 0.01, y_m: 0.02, width_m: 0.03, height_m: 0.04 };
 const ELLIPSE: Region = Region::Ellipse { x_m: 0.02, y_m: 0.01, width_m: 0.04, height_m: 0.03 };
 const POLYGON: Region = Region::Polygon { first: 1, count: 3 };

@@ -44,7 +44,9 @@ const fn grating(wave: Wave, drift_hz: f32) -> Layer {
     })
 }
 
-const fn grating_to_count(wave: Wave, drift_hz: f32) -> Layer {
+/// A grating whose evaluation a benchmark counts.
+#[must_use]
+pub const fn grating_to_count(wave: Wave, drift_hz: f32) -> Layer {
     Layer::Grating(Grating {
         wave,
         cycles_per_m_x: 500.0,
@@ -136,7 +138,9 @@ const fn bitmap(tiled: bool, angle_turns: f32) -> Layer {
     })
 }
 
-const fn bitmap_to_count(tiled: bool) -> Layer {
+/// A bitmap whose evaluation a benchmark counts.
+#[must_use]
+pub const fn bitmap_to_count(tiled: bool) -> Layer {
     Layer::Bitmap(Bitmap {
         crc32: PICTURE,
         x_m: 0.01,

@@ -199,7 +199,7 @@ mod tests {
             format!("repeats faster than {TEXTURE_MIN_HZ} Hz under the finger"),
             format!("less than {percent} % of the power"),
             format!("a fingertip, which resolves {} mm", 1e3 * FINGERTIP_M),
-            format!("changes within {} mm", 1e3 * WAY_MAX_M),
+            format!("change within {} mm", 1e3 * WAY_MAX_M),
             format!("a burst below {} ms", 1e3 * BURST_MIN_S),
             format!("sums the power of about {SUMMED_S:.1} s"),
             format!("the longest are cut to {PAUSE_MAX_S} s"),
