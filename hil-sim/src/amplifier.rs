@@ -1,12 +1,12 @@
 //! The amplifier: converts DAC codes to voltages at its output and at the electrode, with gain error, offset,
-//! saturation, lags, a current limit, and switching times.
+//! saturation, lags, a current limit, and a turn-off delay.
 
 mod config;
 mod lag;
 
 use frixel_control::Drive;
 
-pub use config::{AmplifierConfig, Decay};
+pub use config::AmplifierConfig;
 
 use crate::error::{OutOfRange, above_zero};
 use lag::{Cascade, Lag, Voltages};
@@ -35,11 +35,9 @@ impl Output {
 enum Stage {
     /// Follows the DAC.
     On,
-    /// Behaves as while off, for this many ticks.
-    TurningOn(u32),
     /// Holds its output, for this many ticks.
     Holding(u32),
-    /// Lets its output decay.
+    /// Discharges its output at once, within the current limit.
     Off,
 }
 
@@ -48,17 +46,10 @@ enum Stage {
 pub(crate) struct Amplifier {
     config: AmplifierConfig,
     volts_per_code: f64,
-    saturation_v_peak: f64,
-    offset_v: f64,
     /// Distance of the electrode from the target above which the current limit acts, V.
     slewing_above_v: f64,
     following: Cascade,
-    /// An exponential decay of the output.
-    decaying: Cascade,
-    /// The decay of output and electrode as one node.
-    floating: Lag,
     tick_period_s: f64,
-    turn_on_ticks: u32,
     turn_off_delay_ticks: u32,
     stage: Stage,
     voltages: Voltages,
@@ -73,27 +64,17 @@ impl Amplifier {
         let full_scale_v_peak = above_zero("full_scale_v_peak", full_scale_v_peak)?;
         let tick_period_s = 1.0 / f64::from(tick_hz);
         let electrode_tau_s = config.electrode_time_constant_s;
-        let cascade = |output_tau_s| Cascade::new(output_tau_s, electrode_tau_s, tick_period_s);
-        let decay_tau_s = match config.decay {
-            Decay::Exponential { time_constant_s } | Decay::HighImpedance { time_constant_s } => time_constant_s,
-            Decay::Linear { .. } => 0.0,
-        };
         // Avoid rounding up a time that exceeds a whole number of ticks only by rounding.
-        let ticks = |time_s: f64| libm::ceil(time_s * f64::from(tick_hz) - 1e-6).max(0.0) as u32;
+        let turn_off_delay_ticks = libm::ceil(config.turn_off_delay_s * f64::from(tick_hz) - 1e-6).max(0.0) as u32;
         let slew_v_per_s = config.slew_v_per_s;
         Ok(Self {
             config: *config,
             volts_per_code: config.gain * full_scale_v_peak / f64::from(i16::MAX),
-            saturation_v_peak: config.saturation_v_peak,
-            offset_v: config.offset_v,
             // Infinity times zero: without a limit, nothing exceeds it.
             slewing_above_v: if slew_v_per_s.is_finite() { slew_v_per_s * electrode_tau_s } else { f64::INFINITY },
-            following: cascade(config.output_time_constant_s),
-            decaying: cascade(decay_tau_s),
-            floating: Lag::new(decay_tau_s, tick_period_s),
+            following: Cascade::new(config.output_time_constant_s, electrode_tau_s, tick_period_s),
             tick_period_s,
-            turn_on_ticks: ticks(config.turn_on_s),
-            turn_off_delay_ticks: ticks(config.turn_off_delay_s),
+            turn_off_delay_ticks,
             stage: Stage::Off,
             voltages: Voltages::default(),
             monitor_v: 0.0,
@@ -119,11 +100,12 @@ impl Amplifier {
         }
         match self.stage {
             Stage::On => {
-                let commanded_v = f64::from(drive.dac_code.bits()) * self.volts_per_code + self.offset_v;
-                self.follow(commanded_v.clamp(-self.saturation_v_peak, self.saturation_v_peak))
+                let AmplifierConfig { offset_v, saturation_v_peak, .. } = self.config;
+                let commanded_v = f64::from(drive.dac_code.bits()) * self.volts_per_code + offset_v;
+                self.follow(commanded_v.clamp(-saturation_v_peak, saturation_v_peak))
             }
             Stage::Holding(_) => self.follow(self.voltages.output_v),
-            Stage::TurningOn(_) | Stage::Off => self.decay(),
+            Stage::Off => self.follow(0.0),
         }
     }
 
@@ -141,20 +123,15 @@ impl Amplifier {
 
     /// Moves the output stage on by a tick.
     fn switch(&mut self, enable: bool) {
-        self.stage = match (self.stage, enable) {
-            (Stage::On, false) => Stage::Holding(self.turn_off_delay_ticks),
-            (Stage::TurningOn(_), false) => Stage::Off,
-            (Stage::Holding(ticks), false) => Stage::Holding(ticks.saturating_sub(1)),
-            (Stage::Off, true) => Stage::TurningOn(self.turn_on_ticks),
-            (Stage::TurningOn(ticks), true) => Stage::TurningOn(ticks.saturating_sub(1)),
-            (Stage::Holding(_), true) => Stage::On,
-            (stage, _) => stage,
-        };
         self.stage = match self.stage {
-            Stage::TurningOn(0) => Stage::On,
-            Stage::Holding(0) => Stage::Off,
-            stage => stage,
+            _ if enable => Stage::On,
+            Stage::On => Stage::Holding(self.turn_off_delay_ticks),
+            Stage::Holding(ticks) => Stage::Holding(ticks.saturating_sub(1)),
+            Stage::Off => Stage::Off,
         };
+        if self.stage == Stage::Holding(0) && !self.config.is_stuck_on {
+            self.stage = Stage::Off;
+        }
     }
 
     fn follow(&mut self, target_v: f64) -> Output {
@@ -163,28 +140,6 @@ impl Amplifier {
             return self.slew(target_v, distance_v);
         }
         self.following.tick(&mut self.voltages, target_v)
-    }
-
-    fn decay(&mut self) -> Output {
-        match self.config.decay {
-            // At once, within the current limit.
-            Decay::Exponential { time_constant_s: 0.0 } => self.follow(0.0),
-            Decay::Exponential { .. } => self.decaying.tick(&mut self.voltages, 0.0),
-            Decay::Linear { v_per_s } => {
-                let output_v = self.voltages.output_v;
-                let left_v = output_v.abs() - v_per_s * self.tick_period_s;
-                // The electrode follows the output at the end of the tick.
-                let end_v = left_v.clamp(0.0, self.saturation_v_peak).copysign(output_v);
-                self.voltages.output_v = end_v;
-                self.following.tick(&mut self.voltages, end_v)
-            }
-            Decay::HighImpedance { .. } => {
-                let start_v = self.voltages.electrode_v;
-                let end_v = if start_v.abs() < 1e-9 { 0.0 } else { start_v * self.floating.remainder };
-                self.voltages = Voltages { output_v: end_v, electrode_v: end_v };
-                Output::new(start_v * self.floating.mean, start_v * start_v * self.floating.variance, end_v)
-            }
-        }
     }
 
     /// A tick that starts too far from the target for the amplifier's current: the electrode follows a ramp, and its

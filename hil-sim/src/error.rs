@@ -1,5 +1,7 @@
 //! Errors in the configuration of the world.
 
+use core::ops::RangeInclusive;
+
 use frixel_model::ParameterError;
 use thiserror::Error;
 
@@ -35,15 +37,25 @@ pub(crate) fn above_zero(name: &'static str, found: f64) -> Result<f64, OutOfRan
     }
 }
 
+/// Returns `found` if it is in `range`, which `expected` describes.
+pub(crate) fn within(
+    name: &'static str,
+    range: RangeInclusive<f64>,
+    expected: &'static str,
+    found: f64,
+) -> Result<f64, OutOfRange> {
+    if range.contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected, found }) }
+}
+
 /// Returns `found` if it is from zero to ten.
 ///
 /// Ten seconds is the limit of every delay in the world. A longer one is probably in the wrong unit, and would make the
 /// queues grow.
 pub(crate) fn zero_to_ten(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
-    if (0.0..=10.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 10", found }) }
+    within(name, 0.0..=10.0, "from 0 to 10", found)
 }
 
 /// Returns `found` if it is from zero to one.
 pub(crate) fn zero_to_one(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
-    if (0.0..=1.0).contains(&found) { Ok(found) } else { Err(OutOfRange { name, expected: "from 0 to 1", found }) }
+    within(name, 0.0..=1.0, "from 0 to 1", found)
 }

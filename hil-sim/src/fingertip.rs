@@ -15,6 +15,7 @@ use frixel_model::{Contact, Finger, FrictionLaw, LoadedContact, ParameterError};
 use crate::amplifier::Output;
 use crate::error::OutOfRange;
 use crate::stroke::FingerState;
+use crate::world::Felt;
 pub use config::{FingertipConfig, RELAXATION_LENGTH_M};
 use leakage::Leakage;
 use load::LoadWander;
@@ -32,19 +33,6 @@ const COMPARED_V_RMS: f64 = 1.0;
 pub fn example_finger() -> Result<LoadedContact<f64>, ParameterError> {
     let (coating_gap_um, skin_gap_um) = (1.0 / 3.9, 4.74);
     Contact::new(&Finger::<f64>::EXAMPLE, 1e-6 * (coating_gap_um + skin_gap_um))?.under_load(0.5)
-}
-
-/// Friction under the finger, in newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Friction {
-    /// Friction without the drive.
-    pub(crate) natural_friction_n: f64,
-    /// Friction added by the voltage.
-    pub(crate) electric_friction_n: f64,
-    pub(crate) normal_load_n: f64,
-    /// Friction error caused by a load other than the profile's, N.
-    pub(crate) load_mismatch_n: f64,
-    pub(crate) slip: SlipStep,
 }
 
 /// Difference between the friction under the current load and under the load of the scene's finger.
@@ -125,11 +113,11 @@ impl Fingertip {
         self.scene_load_n = law.normal_load_n();
     }
 
-    /// Returns the friction at the end of a tick in which the finger slid to `finger` over an electrode with the
-    /// voltage of `output`. `measured_load_n`, if any, replaces the varying load.
+    /// Slides to `finger` in a tick, over an electrode with the voltage of `output`. `measured_load_n`, if any, replaces
+    /// the varying load.
     ///
     /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters.
-    pub(crate) fn slide(&mut self, output: &Output, finger: &FingerState, measured_load_n: Option<f64>) -> Friction {
+    pub(crate) fn slide(&mut self, output: &Output, finger: &FingerState, measured_load_n: Option<f64>) -> Felt {
         let voltage_v_rms = self.leakage.tick(output).sqrt();
         if self.wander.tick() {
             self.press(measured_load_n, voltage_v_rms);
@@ -139,26 +127,35 @@ impl Fingertip {
         let steady_electric_n = self.coefficient_gain * self.law.electric_friction_n(voltage_v_rms);
         let electric_friction_n = slip.advance(&mut self.electric_n, steady_electric_n);
         let LoadMismatch { natural_n, electric_share } = self.load_mismatch;
-        Friction {
-            natural_friction_n: self.natural_friction_n(&slip, finger.speed_m_per_s),
+        let natural_friction_n = self.natural_friction_n(&slip, finger.speed_m_per_s);
+        Felt {
+            finger: Some(*finger),
+            friction_n: natural_friction_n + electric_friction_n,
+            natural_friction_n,
             electric_friction_n,
             normal_load_n: self.load_n,
             load_mismatch_n: natural_n + electric_share * electric_friction_n,
             slip,
+            electrode_v: output.end_v,
+            mean_square_v2: output.mean_square_v2,
         }
     }
 
     /// Lifts the finger: there is no friction, and the next touch starts without any.
-    pub(crate) fn lift(&mut self) -> Friction {
+    pub(crate) fn lift(&mut self, output: &Output) -> Felt {
         self.leakage.lift();
         self.sliding.lift();
         (self.natural_n, self.electric_n) = ([0.0; 2], [0.0; 2]);
-        Friction {
+        Felt {
+            finger: None,
+            friction_n: 0.0,
             natural_friction_n: 0.0,
             electric_friction_n: 0.0,
             normal_load_n: 0.0,
             load_mismatch_n: 0.0,
             slip: SlipStep::REST,
+            electrode_v: output.end_v,
+            mean_square_v2: output.mean_square_v2,
         }
     }
 

@@ -23,7 +23,6 @@ pub mod chips;
 pub mod emulated;
 mod error;
 mod fingertip;
-mod journal;
 mod line;
 mod line_noise;
 pub mod looped_board;
@@ -37,21 +36,18 @@ mod stroke;
 mod touch;
 mod world;
 
-pub use amplifier::{AmplifierConfig, Decay};
+pub use amplifier::AmplifierConfig;
 pub use board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
 pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger, one_minus_exp};
 pub use frixel_control::{Board, Drive, Status};
-pub use frixel_session::TableRows;
-pub use journal::Journal;
+pub use frixel_session::{active_bytes_filled, table_rows};
 pub use line::{Line, LineCounts, LineFault};
 pub use line_noise::{LineNoise, NoiseConfig};
 pub use person::Person;
 #[cfg(unix)]
 pub use pseudo_terminal::PseudoTerminal;
-pub use rig::{BoardMemory, Rig, RigConfig};
-pub use stroke::{
-    FingerState, HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS, Point, Stroke, StrokeError, StrokeRow,
-};
+pub use rig::{BoardMemory, Journal, Rig, RigConfig};
+pub use stroke::{FingerState, HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS, Point, Stroke, StrokeError, StrokeRow};
 pub use touch::TouchConfig;
 pub use world::{Felt, OwnFinger, ReferenceFriction, World, WorldConfig, WorldFault, WorldOptions};

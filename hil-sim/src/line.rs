@@ -14,23 +14,17 @@ pub enum LineFault {
     Drop,
     /// The set bits are inverted.
     Flip(u8),
-    /// The cable is cut: this byte and all that follow are lost.
-    Cut,
 }
 
 /// Byte counts by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineCounts {
-    /// Bytes passed to [`Line::send`], including overruns.
+    /// Bytes passed to [`Line::send`], including those that a full queue has rejected.
     pub sent: u64,
     /// Bytes that arrived, including those with flipped bits.
     pub delivered: u64,
     /// Bytes lost on the line.
     pub lost: u64,
-    /// Bytes that arrived with flipped bits.
-    pub flipped: u64,
-    /// Bytes rejected because the queue was full. They are not sent, and have no index.
-    pub overrun: u64,
 }
 
 /// One direction of a serial line: a byte takes ten bit times, in virtual ticks.
@@ -60,7 +54,6 @@ pub struct Line {
     queue_max_len: usize,
     delivered: Vec<u8>,
     faults: BTreeMap<u64, LineFault>,
-    is_cut: bool,
     counts: LineCounts,
 }
 
@@ -80,7 +73,6 @@ impl Line {
             queue_max_len: usize::MAX,
             delivered: Vec::new(),
             faults: BTreeMap::new(),
-            is_cut: false,
             counts: LineCounts::default(),
         })
     }
@@ -99,10 +91,8 @@ impl Line {
     /// Queues bytes. On an idle line the first of them starts now, at the tick boundary.
     pub fn send(&mut self, bytes: &[u8]) {
         let room = self.queue_max_len.saturating_sub(self.queue.len());
-        let (queued, overrun) = bytes.split_at(room.min(bytes.len()));
-        self.queue.extend(queued);
+        self.queue.extend(bytes.iter().take(room));
         self.counts.sent += bytes.len() as u64;
-        self.counts.overrun += overrun.len() as u64;
     }
 
     /// Advances one tick, and returns the bytes that arrived in it.
@@ -127,13 +117,11 @@ impl Line {
     fn arrive(&mut self, byte: u8) {
         let number = self.counts.delivered + self.counts.lost;
         let fault = if self.faults.is_empty() { None } else { self.faults.remove(&number) };
-        self.is_cut |= fault == Some(LineFault::Cut);
-        if self.is_cut || fault == Some(LineFault::Drop) {
+        if fault == Some(LineFault::Drop) {
             self.counts.lost += 1;
             return;
         }
         let flips = if let Some(LineFault::Flip(bits)) = fault { bits } else { 0 };
-        self.counts.flipped += u64::from(flips != 0);
         self.counts.delivered += 1;
         self.delivered.push(byte ^ flips);
     }
@@ -141,11 +129,6 @@ impl Line {
     /// Number of bytes that are queued or on the line.
     pub fn queued(&self) -> usize {
         self.queue.len()
-    }
-
-    /// Whether the cable has been cut.
-    pub fn is_cut(&self) -> bool {
-        self.is_cut
     }
 
     /// Byte counts so far.
@@ -206,15 +189,9 @@ mod tests {
         let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
         line.schedule_fault(1, LineFault::Drop);
         line.schedule_fault(3, LineFault::Flip(0b0100_0001));
-        line.schedule_fault(6, LineFault::Cut);
-        line.send(&[10, 11, 12, 13]);
-        let mut received = line.tick().to_vec();
-        assert!(!line.is_cut());
-        line.send(&[14, 15, 16, 17]);
-        received.extend_from_slice(line.tick());
-        assert_eq!(received, [10, 12, 0b1101 ^ 0b0100_0001, 14, 15]);
-        assert!(line.is_cut());
-        assert_eq!(line.bytes(), LineCounts { sent: 8, delivered: 5, lost: 3, flipped: 1, overrun: 0 });
+        line.send(&[10, 11, 12, 13, 14]);
+        assert_eq!(line.tick(), [10, 12, 0b1101 ^ 0b0100_0001, 14]);
+        assert_eq!(line.bytes(), LineCounts { sent: 5, delivered: 4, lost: 1 });
     }
 
     #[test]
@@ -226,7 +203,7 @@ mod tests {
         assert_eq!(line.tick(), [1, 2, 3, 4, 5]);
         line.send(&[10]);
         assert_eq!(line.tick(), [6, 7, 10]);
-        assert_eq!(line.bytes(), LineCounts { sent: 10, delivered: 8, lost: 0, flipped: 0, overrun: 2 });
+        assert_eq!(line.bytes(), LineCounts { sent: 10, delivered: 8, lost: 0 });
     }
 
     #[test]

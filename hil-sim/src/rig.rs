@@ -2,15 +2,13 @@
 
 use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
-use frixel_layers::BitmapPool;
-use frixel_layers::{Header, Scene};
-use frixel_session::{NextScene, Session, TableRows, active_bytes_filled, table_rows, voltage_max_v_rms};
+use frixel_layers::{BitmapPool, Header};
+use frixel_session::{NextScene, Session, voltage_max_v_rms};
 use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardLimits, notice};
-use frixel_wire::message::Refusal;
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Journal, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
+use crate::{AmplifierConfig, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
 /// Capacity of a board's receive buffer beyond the host's credit, for hello requests, which need no credit, and for
 /// noise.
@@ -35,19 +33,14 @@ impl BoardMemory {
         let (playing, next) = (Active::new(), NextScene::new());
         Box::new(Self { pool: BitmapPool::new(), playing, next, stream: StreamBuffer::new() })
     }
-
-    /// Bytes of coefficients that a scene occupies in a board's RAM, in the active buffer and in the buffer of the next
-    /// scene.
-    #[must_use]
-    pub fn bytes_filled(scene: &Scene) -> usize {
-        active_bytes_filled(scene)
-    }
-
-    /// Number of rows of the inverse table that a board computes for a scene.
-    pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
-        table_rows(scene, board)
-    }
 }
+
+/// A board's input and output at each of its first ticks.
+///
+/// [`Rig::start_journal`] starts one. Replay its inputs on another board and compare the outputs to check whether both
+/// boards behave identically. The inputs stay valid as long as the outputs are equal, since the world would have
+/// responded identically.
+pub type Journal = Vec<(TickInput, TickOutput)>;
 
 /// Configuration of a [`Rig`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,7 +227,7 @@ impl<'a> Rig<'a> {
         self.tick += 1;
         if let (Some(journal), Some(received)) = (&mut self.journal, received) {
             let tick = self.tick as u32;
-            journal.push(&TickInput { tick, received, room, touch, sense }, &TickOutput { tick, drive, sent });
+            journal.push((TickInput { tick, received, room, touch, sense }, TickOutput { tick, drive, sent }));
         }
         RigTick { tick: self.tick, drive, felt, status: self.status }
     }

@@ -1,18 +1,23 @@
 //! Strokes: the place of the finger over time.
 
-mod error;
 mod human;
 mod rows;
 mod straight;
 mod sweep;
 
+use thiserror::Error;
+
 use crate::error::{OutOfRange, above_zero, zero_to_ten};
-pub use error::StrokeError;
 use human::Reconstruction;
-pub use human::{HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS, HUMAN_TUNING_SEEDS};
+pub use human::{HUMAN_STROKE_MAX_S, HUMAN_TEST_SEEDS};
 use rows::Rows;
 use straight::Straight;
 use sweep::Sweep;
+
+/// A number in the description of a stroke is out of range.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("stroke: {0}")]
+pub struct StrokeError(#[from] OutOfRange);
 
 /// A place on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,8 +123,7 @@ impl Stroke {
     /// on a small screen are shorter than the recorded ones. Positions are interpolated linearly between milliseconds.
     /// Tremor from 8 to 12 Hz is included, with an assumed amplitude.
     ///
-    /// Tests are evaluated on [`HUMAN_TEST_SEEDS`], and constants are tuned on [`HUMAN_TUNING_SEEDS`]. [`Self::sweep`]
-    /// is a deterministic stroke of any duration.
+    /// Tests are evaluated on [`HUMAN_TEST_SEEDS`]. [`Self::sweep`] is a deterministic stroke of any duration.
     ///
     /// ```
     /// use frixel_hil_sim::Stroke;

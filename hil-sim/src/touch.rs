@@ -84,6 +84,26 @@ impl TouchConfig {
         BUNDLED.into_iter().map(|(name, ..)| name)
     }
 
+    /// Checks the range of every number.
+    fn check(&self, tick_hz: f64) -> Result<(), OutOfRange> {
+        let rate_hz = above_zero("touch rate_hz", self.rate_hz)?;
+        if rate_hz > tick_hz {
+            return Err(OutOfRange { name: "touch rate_hz", expected: "at most the tick rate", found: rate_hz });
+        }
+        let latency_s = zero_to_ten("touch latency_s", self.latency_s)?;
+        if latency_s * tick_hz >= f64::from(u32::MAX) {
+            return Err(OutOfRange { name: "touch latency_s", expected: "below 2^32 ticks", found: latency_s });
+        }
+        zero_to_ten("touch noise_rms_m", self.noise_rms_m)?;
+        zero_to_ten("touch jitter_rms_s", self.jitter_rms_s)?;
+        zero_to_one("touch lost_share", self.lost_share)?;
+        zero_to_one("touch bunched_share", self.bunched_share)?;
+        zero_to_ten("touch pause_rate_hz", self.pause_rate_hz)?;
+        zero_to_ten("touch pause_max_s", self.pause_max_s)?;
+        zero_to_ten("touch step_m", self.step_m)?;
+        Ok(())
+    }
+
     /// The same source without losses and with unlimited resolution.
     #[must_use]
     pub fn without_losses(self) -> Self {
@@ -102,18 +122,6 @@ impl Default for TouchConfig {
     }
 }
 
-/// Losses of reports.
-#[derive(Clone, Debug)]
-struct Losses {
-    random: Random,
-    lost_share: f64,
-    bunched_share: f64,
-    /// Probability that a pause begins at a report.
-    pause_share: f64,
-    pause_max_ticks: f64,
-    pause_until_tick: f64,
-}
-
 /// Outcome of a report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ReportOutcome {
@@ -122,63 +130,25 @@ enum ReportOutcome {
     Lost,
 }
 
-impl Losses {
-    fn new(config: &TouchConfig, tick_hz: f64, seed: u64) -> Result<Self, OutOfRange> {
-        let pause_rate_hz = zero_to_ten("touch pause_rate_hz", config.pause_rate_hz)?;
-        Ok(Self {
-            random: Random::new(seed, Purpose::LostReports),
-            lost_share: zero_to_one("touch lost_share", config.lost_share)?,
-            bunched_share: zero_to_one("touch bunched_share", config.bunched_share)?,
-            pause_share: pause_rate_hz / config.rate_hz,
-            pause_max_ticks: zero_to_ten("touch pause_max_s", config.pause_max_s)? * tick_hz,
-            pause_until_tick: 0.0,
-        })
-    }
-
-    /// Draws the outcome of a sample's report. The number of draws per sample is constant.
-    fn draw(&mut self, tick: u64) -> ReportOutcome {
-        let [lost, bunched, begins, length] = [(); 4].map(|()| self.random.uniform());
-        let tick = tick as f64;
-        if begins < self.pause_share && tick >= self.pause_until_tick {
-            self.pause_until_tick = tick + length * self.pause_max_ticks;
-        }
-        if tick < self.pause_until_tick || lost < self.lost_share {
-            ReportOutcome::Lost
-        } else if bunched < self.bunched_share {
-            ReportOutcome::WaitsForNext
-        } else {
-            ReportOutcome::Arrives
-        }
-    }
-}
-
-/// A report under way to the board.
-#[derive(Clone, Copy, Debug)]
-struct PendingReport {
-    arrival_tick: u64,
-    touch: Touch,
-}
-
 /// The touch source.
 ///
 /// It samples at whole ticks. The first sample without a finger reports the lift; there are no more reports until the
 /// finger touches again.
 #[derive(Clone, Debug)]
 pub(crate) struct TouchSource {
-    period_ticks: f64,
+    config: TouchConfig,
+    tick_hz: f64,
     phase_ticks: f64,
     latency_ticks: u32,
-    jitter_rms_ticks: f64,
-    noise_rms_m: f64,
-    step_m: f64,
-    losses: Losses,
     noise: Random,
     jitter: Random,
+    losses: Random,
+    pause_until_tick: f64,
     samples: u64,
     next_sample_tick: u64,
     finger_was_down: bool,
-    /// Reports in the order of their samples, in which they also arrive.
-    under_way: VecDeque<PendingReport>,
+    /// Reports with their tick of arrival, in the order of their samples, in which they also arrive.
+    under_way: VecDeque<(u64, Touch)>,
     /// A report delayed until the next one.
     waiting: Option<Touch>,
     arrived: Option<Touch>,
@@ -188,26 +158,17 @@ impl TouchSource {
     /// A touch source whose first sample is at a random time within the first report period.
     pub(crate) fn new(config: &TouchConfig, tick_hz: u32, seed: u64) -> Result<Self, OutOfRange> {
         let tick_hz = f64::from(tick_hz);
-        let rate_hz = above_zero("touch rate_hz", config.rate_hz)?;
-        if rate_hz > tick_hz {
-            return Err(OutOfRange { name: "touch rate_hz", expected: "at most the tick rate", found: rate_hz });
-        }
-        let latency_ticks = libm::round(zero_to_ten("touch latency_s", config.latency_s)? * tick_hz);
-        if latency_ticks > f64::from(u32::MAX) {
-            return Err(OutOfRange { name: "touch latency_s", expected: "below 2^32 ticks", found: config.latency_s });
-        }
-        let period_ticks = tick_hz / rate_hz;
-        let phase_ticks = Random::new(seed, Purpose::ReportPhase).uniform() * period_ticks;
+        config.check(tick_hz)?;
+        let phase_ticks = Random::new(seed, Purpose::ReportPhase).uniform() * (tick_hz / config.rate_hz);
         Ok(Self {
-            period_ticks,
+            config: *config,
+            tick_hz,
             phase_ticks,
-            latency_ticks: latency_ticks as u32,
-            jitter_rms_ticks: zero_to_ten("touch jitter_rms_s", config.jitter_rms_s)? * tick_hz,
-            noise_rms_m: zero_to_ten("touch noise_rms_m", config.noise_rms_m)?,
-            step_m: zero_to_ten("touch step_m", config.step_m)?,
-            losses: Losses::new(config, tick_hz, seed)?,
+            latency_ticks: libm::round(config.latency_s * tick_hz) as u32,
             noise: Random::new(seed, Purpose::PlaceNoise),
             jitter: Random::new(seed, Purpose::ReportJitter),
+            losses: Random::new(seed, Purpose::LostReports),
+            pause_until_tick: 0.0,
             samples: 0,
             next_sample_tick: phase_ticks as u64,
             finger_was_down: false,
@@ -221,16 +182,20 @@ impl TouchSource {
     /// sample reports the finger or its lift.
     pub(crate) fn from_tick(config: &TouchConfig, tick_hz: u32, seed: u64, tick: u64) -> Result<Self, OutOfRange> {
         let mut source = Self::new(config, tick_hz, seed)?;
-        let passed = (tick as f64 - source.phase_ticks) / source.period_ticks;
+        let passed = (tick as f64 - source.phase_ticks) / source.period_ticks();
         source.samples = libm::ceil(passed).max(0.0) as u64;
         source.next_sample_tick = source.sample_tick();
         source.finger_was_down = true;
         Ok(source)
     }
 
+    fn period_ticks(&self) -> f64 {
+        self.tick_hz / self.config.rate_hz
+    }
+
     /// The tick of the next sample.
     fn sample_tick(&self) -> u64 {
-        (self.phase_ticks + self.samples as f64 * self.period_ticks) as u64
+        (self.phase_ticks + self.samples as f64 * self.period_ticks()) as u64
     }
 
     /// Advances to `tick`, at which the finger is at `finger`. Must be called for every tick from 0.
@@ -238,10 +203,7 @@ impl TouchSource {
         if tick >= self.next_sample_tick {
             self.sample(tick, finger);
         }
-        self.arrived = match self.under_way.front() {
-            Some(report) if report.arrival_tick <= tick => self.under_way.pop_front().map(|report| report.touch),
-            _ => None,
-        };
+        self.arrived = self.under_way.pop_front_if(|(arrival_tick, _)| *arrival_tick <= tick).map(|(_, touch)| touch);
     }
 
     /// Returns the report that arrived at the current tick.
@@ -253,10 +215,10 @@ impl TouchSource {
         self.samples += 1;
         self.next_sample_tick = self.sample_tick();
         // Drawn for every sample, so that lifts do not shift the noise of later samples.
-        let x_noise_m = self.noise.gaussian() * self.noise_rms_m;
-        let y_noise_m = self.noise.gaussian() * self.noise_rms_m;
-        let jitter_ticks = self.jitter.gaussian_within(JITTER_LIMIT) * self.jitter_rms_ticks;
-        let fate = self.losses.draw(tick);
+        let x_noise_m = self.noise.gaussian() * self.config.noise_rms_m;
+        let y_noise_m = self.noise.gaussian() * self.config.noise_rms_m;
+        let jitter_ticks = self.jitter.gaussian_within(JITTER_LIMIT) * (self.config.jitter_rms_s * self.tick_hz);
+        let outcome = self.draw_outcome(tick as f64);
         let touch = match finger {
             Some(finger) => Touch::Down {
                 x_m: self.in_steps(finger.x_m + x_noise_m) as f32,
@@ -268,7 +230,7 @@ impl TouchSource {
         };
         self.finger_was_down = finger.is_some();
         let delay_ticks = libm::round(f64::from(self.latency_ticks) + jitter_ticks).max(0.0) as u64;
-        match fate {
+        match outcome {
             // A lift is reported repeatedly until it arrives.
             ReportOutcome::Arrives => self.send(tick + delay_ticks, touch),
             _ if touch == Touch::Up => self.send(tick + delay_ticks, touch),
@@ -279,14 +241,29 @@ impl TouchSource {
 
     /// Sends a report, after the delayed one.
     fn send(&mut self, arrival_tick: u64, touch: Touch) {
-        if let Some(touch) = self.waiting.take() {
-            self.under_way.push_back(PendingReport { arrival_tick, touch });
+        let reports = self.waiting.take().into_iter().chain([touch]);
+        self.under_way.extend(reports.map(|touch| (arrival_tick, touch)));
+    }
+
+    /// Draws the outcome of a sample's report. The number of draws per sample is constant.
+    fn draw_outcome(&mut self, tick: f64) -> ReportOutcome {
+        let [lost, bunched, begins, length] = [(); 4].map(|()| self.losses.uniform());
+        let TouchConfig { rate_hz, lost_share, bunched_share, pause_rate_hz, pause_max_s, .. } = self.config;
+        if begins < pause_rate_hz / rate_hz && tick >= self.pause_until_tick {
+            self.pause_until_tick = tick + length * (pause_max_s * self.tick_hz);
         }
-        self.under_way.push_back(PendingReport { arrival_tick, touch });
+        if tick < self.pause_until_tick || lost < lost_share {
+            ReportOutcome::Lost
+        } else if bunched < bunched_share {
+            ReportOutcome::WaitsForNext
+        } else {
+            ReportOutcome::Arrives
+        }
     }
 
     fn in_steps(&self, place_m: f64) -> f64 {
-        if self.step_m > 0.0 { libm::round(place_m / self.step_m) * self.step_m } else { place_m }
+        let step_m = self.config.step_m;
+        if step_m > 0.0 { libm::round(place_m / step_m) * step_m } else { place_m }
     }
 }
 

@@ -11,7 +11,7 @@ use frixel_session::Touch;
 
 use crate::amplifier::{Amplifier, AmplifierConfig};
 use crate::error::{OutOfRange, WorldError};
-use crate::fingertip::{Fingertip, FingertipConfig, Friction, SlipStep, example_finger};
+use crate::fingertip::{Fingertip, FingertipConfig, SlipStep, example_finger};
 use crate::stroke::{FingerState, Stroke};
 use crate::touch::{TouchConfig, TouchSource};
 use faults::FaultSchedule;
@@ -131,17 +131,13 @@ impl ReferenceFriction {
 /// ```
 #[derive(Clone, Debug)]
 pub struct World {
-    tick_hz: u32,
+    /// The world without scheduled faults.
+    config: WorldConfig,
     tick: u64,
     seed: u64,
-    full_scale_v_peak: f64,
     amplifier: Amplifier,
-    /// The amplifier without scheduled faults.
-    healthy_amplifier: AmplifierConfig,
     faults: FaultSchedule,
     fingertip: Fingertip,
-    /// Whether the finger stays when a scene with another profile is loaded.
-    owns_finger: bool,
     touch_source: TouchSource,
     /// The report that arrived at the current tick.
     touch: Option<Touch>,
@@ -175,15 +171,12 @@ impl World {
             fingertip.set_law(law);
         }
         Ok(Self {
-            tick_hz,
+            config,
             tick: 0,
             seed,
-            full_scale_v_peak,
             amplifier: Amplifier::new(&amplifier, full_scale_v_peak, tick_hz)?,
-            healthy_amplifier: amplifier,
             faults: FaultSchedule::default(),
             fingertip,
-            owns_finger: own_finger.is_some(),
             touch_source,
             touch: None,
             stroke,
@@ -195,7 +188,7 @@ impl World {
     pub fn set_finger(&mut self, law: impl Into<FrictionLaw>) {
         let law = law.into();
         self.fingertip.set_scene_load(&law);
-        if !self.owns_finger {
+        if self.config.own_finger.is_none() {
             self.fingertip.set_law(law);
         }
     }
@@ -206,7 +199,7 @@ impl World {
     ///
     /// [`OutOfRange`] names an invalid number of the configuration; the previous source stays.
     pub fn set_touch_source(&mut self, config: &TouchConfig) -> Result<(), OutOfRange> {
-        self.touch_source = TouchSource::from_tick(config, self.tick_hz, self.seed, self.tick)?;
+        self.touch_source = TouchSource::from_tick(config, self.config.tick_hz, self.seed, self.tick)?;
         self.touch = None;
         Ok(())
     }
@@ -247,7 +240,7 @@ impl World {
     /// [`OutOfRange`] names an invalid number of the fault.
     pub fn schedule_fault(&mut self, ticks: Range<u64>, fault: WorldFault) -> Result<(), OutOfRange> {
         let ticks = ticks.start.max(self.tick)..ticks.end;
-        self.faults.add(ticks, fault, self.healthy_amplifier)
+        self.faults.add(ticks, fault, self.config.amplifier)
     }
 
     /// Causes `fault` for `ticks` ticks, from the current one on.
@@ -258,7 +251,7 @@ impl World {
 
     /// Ticks a second.
     pub fn tick_hz(&self) -> u32 {
-        self.tick_hz
+        self.config.tick_hz
     }
 
     /// Number of ticks since the start.
@@ -280,7 +273,7 @@ impl World {
 
     /// Time since the start of the stroke, s.
     fn stroke_s(&self, start_tick: u64) -> f64 {
-        (self.tick - start_tick) as f64 / f64::from(self.tick_hz)
+        (self.tick - start_tick) as f64 / f64::from(self.config.tick_hz)
     }
 
     /// The load stated by the stroke or the caller, in N.
@@ -321,31 +314,22 @@ impl World {
 
     /// Holds the board's output for one tick, and advances to the next.
     pub fn apply(&mut self, drive: Drive) -> Felt {
-        if let Some(config) = self.faults.new_amplifier(self.tick, self.healthy_amplifier) {
+        if let Some(config) = self.faults.new_amplifier(self.tick, self.config.amplifier) {
+            let WorldConfig { full_scale_v_peak, tick_hz, .. } = self.config;
             // Its numbers were checked when the fault was scheduled.
-            if let Ok(amplifier) = self.amplifier.reconfigured(&config, self.full_scale_v_peak, self.tick_hz) {
+            if let Ok(amplifier) = self.amplifier.reconfigured(&config, full_scale_v_peak, tick_hz) {
                 self.amplifier = amplifier;
             }
         }
         let output = self.amplifier.tick(self.faults.drive(self.tick, drive));
         self.tick += 1;
         let finger = self.finger();
-        let Friction { natural_friction_n, electric_friction_n, normal_load_n, load_mismatch_n, slip } = match &finger {
+        let felt = match &finger {
             Some(finger) => self.fingertip.slide(&output, finger, self.stated_load_n()),
-            None => self.fingertip.lift(),
+            None => self.fingertip.lift(&output),
         };
         self.touch_source.tick(self.tick, finger.as_ref());
         self.touch = self.faults.touch(self.tick, self.touch_source.arrived());
-        Felt {
-            finger,
-            friction_n: natural_friction_n + electric_friction_n,
-            natural_friction_n,
-            electric_friction_n,
-            normal_load_n,
-            load_mismatch_n,
-            slip,
-            electrode_v: output.end_v,
-            mean_square_v2: output.mean_square_v2,
-        }
+        felt
     }
 }

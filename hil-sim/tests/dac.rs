@@ -7,19 +7,19 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use embedded_hal::spi::SpiDevice;
 use frixel_drivers::ad5761r::{self, Ad5761r};
-use frixel_hil_sim::chips::{Ad5761rChip, ChipDelay, ChipSpi};
+use frixel_hil_sim::chips::Ad5761rChip;
 use frixel_wire::dac_code::DacCode;
 
 /// A step of the DAC, in volts.
 const STEP_V: f64 = 10.0 / 32_768.0;
 
-fn dac(chip: &Ad5761rChip) -> Ad5761r<ChipSpi, ChipDelay> {
-    Ad5761r::new(chip.spi(), chip.delay())
+fn dac(chip: &Ad5761rChip) -> Ad5761r<Ad5761rChip, Ad5761rChip> {
+    Ad5761r::new(chip.clone(), chip.clone())
 }
 
 /// A frame that the tick sends by hardware of its own.
 fn tick_frame(chip: &Ad5761rChip, code: i16) {
-    chip.spi().write(&ad5761r::output(DacCode::from_bits(code))).unwrap();
+    chip.clone().write(&ad5761r::output(DacCode::from_bits(code))).unwrap();
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn apply(chip: &Ad5761rChip, edge: Edge) {
 }
 
 fn wait_until(chip: &Ad5761rChip, at_ns: u64) {
-    chip.delay().delay_ns(u32::try_from(at_ns.saturating_sub(chip.now_ns())).unwrap());
+    chip.clone().delay_ns(u32::try_from(at_ns.saturating_sub(chip.now_ns())).unwrap());
 }
 
 /// A prepared DAC that has put a code out, in the middle of a frame with the next code: the first `edges_before` edges

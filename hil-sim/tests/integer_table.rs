@@ -8,6 +8,7 @@ use std::env;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::emulator::is_ci;
 use frixel_model::{Contact, Finger, FixedTable, LoadedContact, TableBuilder, U0F32, U1F31};
 
 const EMULATOR: &str = "qemu-system-arm";
@@ -28,9 +29,8 @@ fn is_available() -> bool {
     let emulator = Command::new(EMULATOR).arg("--version").stdout(Stdio::null()).status();
     let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output().unwrap();
     let has_target = Path::new(String::from_utf8_lossy(&libraries.stdout).trim()).is_dir();
-    let is_ci = env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0");
     let is_available = emulator.is_ok() && has_target;
-    assert!(is_available || !is_ci, "{EMULATOR} or the target {TARGET} is missing");
+    assert!(is_available || !is_ci(), "{EMULATOR} or the target {TARGET} is missing");
     if !is_available {
         eprintln!("SKIPPED on the emulated Cortex-M3: {EMULATOR} or the target {TARGET} is missing");
     }

@@ -3,7 +3,7 @@
 use frixel_control::Board;
 use frixel_wire::hello::BoardLimits;
 
-use crate::error::{OutOfRange, above_zero, zero_to_ten};
+use crate::error::{OutOfRange, above_zero, within, zero_to_ten};
 
 /// Deviations of the amplifier from an ideal one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,38 +20,13 @@ pub struct AmplifierConfig {
     pub offset_v: f64,
     /// Slew limit of the electrode, in V/s, above 0: the amplifier's current limit over the load capacitance.
     pub slew_v_per_s: f64,
-    /// Time from the rise of the enable until the output follows the DAC, in seconds: 0 to 10, rounded up to whole
-    /// ticks.
-    pub turn_on_s: f64,
-    /// Time from the fall of the enable until the output begins to [decay](Self::decay), in seconds: 0 to 10, rounded
-    /// up to whole ticks. The output is constant meanwhile.
+    /// Time from the fall of the enable until the output falls, in seconds: 0 to 10, rounded up to whole ticks. The
+    /// output is constant meanwhile.
     pub turn_off_delay_s: f64,
-    /// Decay of the output.
-    pub decay: Decay,
+    /// Whether the output stays constant as long as the amplifier is disabled, as with a broken output stage.
+    pub is_stuck_on: bool,
     /// Monitor voltage over output voltage: 1 for an ideal monitor, 0 for a dead one. Finite.
     pub monitor_gain: f64,
-}
-
-/// Decay of a disabled amplifier's output.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Decay {
-    /// The output falls at a constant rate, in V/s. At 0 it stays, and at a negative rate it rises to saturation, as
-    /// with a broken output stage.
-    Linear {
-        /// Rate in V/s, finite.
-        v_per_s: f64,
-    },
-    /// The output stage discharges its output through a resistor, with this time constant.
-    Exponential {
-        /// In seconds: 0 (at once) to 10.
-        time_constant_s: f64,
-    },
-    /// The output becomes high-impedance: output and electrode form one node, which discharges through bleed resistor
-    /// and finger with this time constant, 5.3 ms for 10 megohms and 0.53 nF.
-    HighImpedance {
-        /// In seconds: 0 (at once) to 10.
-        time_constant_s: f64,
-    },
 }
 
 impl AmplifierConfig {
@@ -65,9 +40,8 @@ impl AmplifierConfig {
         electrode_time_constant_s: 20e-6,
         offset_v: 0.0,
         slew_v_per_s: f64::INFINITY,
-        turn_on_s: 0.0,
         turn_off_delay_s: 0.0,
-        decay: Decay::Exponential { time_constant_s: 0.0 },
+        is_stuck_on: false,
         monitor_gain: 1.0,
     };
 
@@ -94,21 +68,12 @@ impl AmplifierConfig {
         above_zero("amplifier saturation_v_peak", self.saturation_v_peak)?;
         zero_to_ten("amplifier output_time_constant_s", self.output_time_constant_s)?;
         zero_to_ten("amplifier electrode_time_constant_s", self.electrode_time_constant_s)?;
-        zero_to_ten("amplifier turn_on_s", self.turn_on_s)?;
         zero_to_ten("amplifier turn_off_delay_s", self.turn_off_delay_s)?;
         if self.slew_v_per_s != f64::INFINITY {
             above_zero("amplifier slew_v_per_s", self.slew_v_per_s)?;
         }
-        if !(-10.0..=10.0).contains(&self.offset_v) {
-            return Err(OutOfRange { name: "amplifier offset_v", expected: "from -10 to 10", found: self.offset_v });
-        }
-        match self.decay {
-            Decay::Linear { v_per_s } => finite("amplifier decay v_per_s", v_per_s)?,
-            Decay::Exponential { time_constant_s } | Decay::HighImpedance { time_constant_s } => {
-                zero_to_ten("amplifier decay time_constant_s", time_constant_s)?
-            }
-        };
-        finite("amplifier monitor_gain", self.monitor_gain)?;
+        within("amplifier offset_v", -10.0..=10.0, "from -10 to 10", self.offset_v)?;
+        within("amplifier monitor_gain", f64::MIN..=f64::MAX, "finite", self.monitor_gain)?;
         Ok(())
     }
 }
@@ -118,8 +83,4 @@ impl Default for AmplifierConfig {
     fn default() -> Self {
         Self::IDEAL
     }
-}
-
-fn finite(name: &'static str, found: f64) -> Result<f64, OutOfRange> {
-    if found.is_finite() { Ok(found) } else { Err(OutOfRange { name, expected: "finite", found }) }
 }

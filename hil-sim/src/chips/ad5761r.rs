@@ -63,13 +63,11 @@ enum Input {
     Reset,
 }
 
-/// A DAC on a board.
+/// A DAC on a board. All clones are the same chip.
+///
+/// To a driver it is a device on an SPI bus, and a delay that advances the chip's virtual time.
 #[derive(Clone, Debug)]
 pub struct Ad5761rChip(Rc<RefCell<Chip>>);
-
-/// The chip's SPI side: SCLK, SDI, SDO and SYNC.
-#[derive(Debug)]
-pub struct ChipSpi(Rc<RefCell<Chip>>);
 
 /// An input of the chip, as a pin that software sets.
 #[derive(Debug)]
@@ -77,10 +75,6 @@ pub struct ChipPin {
     chip: Rc<RefCell<Chip>>,
     input: Input,
 }
-
-/// A delay that advances the chip's virtual time.
-#[derive(Debug)]
-pub struct ChipDelay(Rc<RefCell<Chip>>);
 
 impl Ad5761rChip {
     /// A chip with its supplies on and CLEAR high.
@@ -109,11 +103,6 @@ impl Ad5761rChip {
         Self(Rc::new(RefCell::new(chip)))
     }
 
-    /// The bus for a driver.
-    pub fn spi(&self) -> ChipSpi {
-        ChipSpi(Rc::clone(&self.0))
-    }
-
     /// SYNC, as a pin set by software. Each change advances the chip's virtual time.
     pub fn sync_pin(&self) -> ChipPin {
         ChipPin { chip: Rc::clone(&self.0), input: Input::Sync }
@@ -122,11 +111,6 @@ impl Ad5761rChip {
     /// CLEAR, as a pin set by software.
     pub fn clear_pin(&self) -> ChipPin {
         ChipPin { chip: Rc::clone(&self.0), input: Input::Clear }
-    }
-
-    /// A delay that advances the chip's virtual time.
-    pub fn delay(&self) -> ChipDelay {
-        ChipDelay(Rc::clone(&self.0))
     }
 
     /// Switches the supplies on or off. The chip starts with its registers after power-on.
@@ -331,11 +315,11 @@ impl Chip {
     }
 }
 
-impl ErrorType for ChipSpi {
+impl ErrorType for Ad5761rChip {
     type Error = Infallible;
 }
 
-impl SpiDevice for ChipSpi {
+impl SpiDevice for Ad5761rChip {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         let mut chip = self.0.borrow_mut();
         chip.set(Input::Sync, false);
@@ -384,7 +368,7 @@ impl ChipPin {
     }
 }
 
-impl DelayNs for ChipDelay {
+impl DelayNs for Ad5761rChip {
     fn delay_ns(&mut self, ns: u32) {
         self.0.borrow_mut().now_ns += u64::from(ns);
     }

@@ -31,17 +31,11 @@ struct Bus {
     pulses: u32,
 }
 
-/// A bus with one target, and a controller that releases both lines.
+/// A bus with one target, and a controller that releases both lines. All clones are the same bus.
+///
+/// To the controller's driver, SCL is an open-drain output, and SDA an input.
 #[derive(Clone, Debug)]
 pub struct HeldBus(Rc<RefCell<Bus>>);
-
-/// SCL, as an open-drain output of the controller.
-#[derive(Debug)]
-pub struct SclPin(Rc<RefCell<Bus>>);
-
-/// SDA, as an input of the controller.
-#[derive(Debug)]
-pub struct SdaPin(Rc<RefCell<Bus>>);
 
 impl HeldBus {
     /// A bus whose target is at clock `clock` (0 to 8) of a byte, with SCL high.
@@ -54,18 +48,6 @@ impl HeldBus {
     /// Shorts SDA to ground.
     pub fn short_sda(&self) {
         self.0.borrow_mut().is_shorted = true;
-    }
-
-    /// SCL for a driver.
-    #[must_use]
-    pub fn scl(&self) -> SclPin {
-        SclPin(Rc::clone(&self.0))
-    }
-
-    /// SDA for a driver.
-    #[must_use]
-    pub fn sda(&self) -> SdaPin {
-        SdaPin(Rc::clone(&self.0))
     }
 
     /// Issues a START condition, which resets the target. Returns whether this was possible, which requires both lines
@@ -111,11 +93,11 @@ impl Bus {
     }
 }
 
-impl ErrorType for SclPin {
+impl ErrorType for HeldBus {
     type Error = Infallible;
 }
 
-impl OutputPin for SclPin {
+impl OutputPin for HeldBus {
     fn set_low(&mut self) -> Result<(), Infallible> {
         self.0.borrow_mut().set_scl(false);
         Ok(())
@@ -127,11 +109,7 @@ impl OutputPin for SclPin {
     }
 }
 
-impl ErrorType for SdaPin {
-    type Error = Infallible;
-}
-
-impl InputPin for SdaPin {
+impl InputPin for HeldBus {
     fn is_high(&mut self) -> Result<bool, Infallible> {
         Ok(self.0.borrow().sda_is_high())
     }

@@ -32,17 +32,11 @@ struct Module {
     corrupted_lengths: u32,
 }
 
-/// A module along the edge of a screen.
+/// A module along the edge of a screen. All clones are the same module.
+///
+/// To a driver it is an I2C bus, and the input that its data-ready output leads to.
 #[derive(Clone, Debug)]
 pub struct ZForceModule(Rc<RefCell<Module>>);
-
-/// The module's I2C side.
-#[derive(Debug)]
-pub struct ModuleBus(Rc<RefCell<Module>>);
-
-/// The module's data-ready output.
-#[derive(Debug)]
-pub struct DataReadyPin(Rc<RefCell<Module>>);
 
 /// A delay that takes one poll per millisecond.
 #[derive(Debug)]
@@ -62,13 +56,6 @@ pub enum TouchEvent {
     Invalid = 3,
 }
 
-/// Why a transfer failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BusFault {
-    /// No device acknowledged the address, or the module is not connected.
-    NoAcknowledge,
-}
-
 impl ZForceModule {
     /// A module that has just been switched on. Each transfer takes `transfer_polls` polls.
     #[must_use]
@@ -83,18 +70,6 @@ impl ZForceModule {
         })));
         module.restart();
         module
-    }
-
-    /// The bus for a driver.
-    #[must_use]
-    pub fn bus(&self) -> ModuleBus {
-        ModuleBus(Rc::clone(&self.0))
-    }
-
-    /// The data-ready pin for a driver.
-    #[must_use]
-    pub fn data_ready(&self) -> DataReadyPin {
-        DataReadyPin(Rc::clone(&self.0))
     }
 
     /// Discards the settings and the unread messages, as a short supply dip does.
@@ -204,25 +179,17 @@ impl Module {
     }
 }
 
-impl i2c::Error for BusFault {
-    fn kind(&self) -> ErrorKind {
-        match self {
-            Self::NoAcknowledge => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
-        }
-    }
+impl i2c::ErrorType for ZForceModule {
+    type Error = ErrorKind;
 }
 
-impl i2c::ErrorType for ModuleBus {
-    type Error = BusFault;
-}
-
-impl I2c for ModuleBus {
-    async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), BusFault> {
+impl I2c for ZForceModule {
+    async fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
         let polls = self.0.borrow().transfer_polls;
         wait(polls).await;
         let mut module = self.0.borrow_mut();
         if !module.acknowledges(address) {
-            return Err(BusFault::NoAcknowledge);
+            return Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address));
         }
         for operation in operations {
             match operation {
@@ -234,11 +201,11 @@ impl I2c for ModuleBus {
     }
 }
 
-impl digital::ErrorType for DataReadyPin {
+impl digital::ErrorType for ZForceModule {
     type Error = Infallible;
 }
 
-impl InputPin for DataReadyPin {
+impl InputPin for ZForceModule {
     fn is_high(&mut self) -> Result<bool, Infallible> {
         Ok(!self.0.borrow().waiting.is_empty())
     }

@@ -8,35 +8,14 @@ use thiserror::Error;
 /// Why an emulated board is unavailable, or has stopped.
 #[derive(Debug, Error)]
 pub enum EmulatorError {
-    /// The emulator is not installed.
-    #[error("the emulator is not installed: `apt-get install qemu-system-arm`")]
-    NoEmulator,
-    /// Node, which runs the emulator of the Pico, is not installed.
-    #[error("the Pico's emulator runs on node, which is not installed: `apt-get install nodejs npm`")]
-    NoNode,
-    /// npm, which fetches the emulator of the Pico, is not installed.
-    #[error("the Pico's emulator rp2040js is fetched by npm, which is not installed: `apt-get install npm`")]
-    NoNpm,
-    /// The packages that run the Pico's image could not be installed.
-    #[error("the emulator rp2040js could not be installed by `npm ci` in {folder}:\n{output}")]
-    NoPackages {
-        /// The folder of the programs that use it.
-        folder: String,
-        /// The output of npm.
-        output: String,
+    /// A program, or a target of the compiler, is not installed.
+    #[error("{what} is not installed: `{command}`")]
+    NotInstalled {
+        /// The missing part, and what needs it.
+        what: &'static str,
+        /// The command that installs it.
+        command: String,
     },
-    /// The compiler cannot compile for the board.
-    #[error("the compiler's target for the board is not installed: `rustup target add {target}`")]
-    NoTarget {
-        /// The target's name.
-        target: &'static str,
-    },
-    /// Rust is not installed.
-    #[error(
-        "the emulated board's image is not in the folder `images` beside this program, and building it needs Rust, \
-         which is not installed: `curl https://sh.rustup.rs -sSf | sh`"
-    )]
-    NoCompiler,
     /// The board's sources are missing.
     #[error(
         "the emulated board's image is not in the folder `images` beside this program, and frixel's sources to build it \
@@ -54,10 +33,12 @@ pub enum EmulatorError {
         /// The missing part of a checkout.
         missing: String,
     },
-    /// The image does not compile.
-    #[error("the emulated board's image does not compile:\n{output}")]
-    NotBuilt {
-        /// The compiler's output.
+    /// A program failed.
+    #[error("{failure}:\n{output}")]
+    Failed {
+        /// The failure.
+        failure: String,
+        /// The program's output.
         output: String,
     },
     /// An operation of the operating system failed.
@@ -67,26 +48,6 @@ pub enum EmulatorError {
         action: &'static str,
         /// The operating system's error.
         reason: io::Error,
-    },
-    /// The emulated board cannot be given its limits.
-    #[error(
-        "the emulated board cannot have the limits of `Board::PICO`, which are in its flash before it starts: {reason}"
-    )]
-    LimitsNotStored {
-        /// The reason, and what to do.
-        reason: String,
-    },
-    /// The emulator has ended.
-    #[error("the emulator has ended:\n{output}")]
-    Ended {
-        /// The emulator's output.
-        output: String,
-    },
-    /// The emulator has not reported its serial port.
-    #[error("the emulator has not reported its serial port:\n{output}")]
-    NoSerialPort {
-        /// The emulator's output.
-        output: String,
     },
     /// The board missed a deadline.
     #[error("the emulated board has not completed {what} for {seconds} s: is the image stuck, or the machine busy?")]
@@ -113,6 +74,11 @@ pub enum EmulatorError {
 }
 
 impl EmulatorError {
+    /// The emulator has ended, with this output.
+    pub(crate) fn ended(output: impl Into<String>) -> Self {
+        Self::Failed { failure: "the emulator has ended".into(), output: output.into() }
+    }
+
     /// Wraps an error of the operating system, for `map_err`.
     pub(crate) fn system(action: &'static str) -> impl Fn(io::Error) -> Self {
         move |reason| Self::System { action, reason }

@@ -40,11 +40,14 @@ fn install(folder: &Path) -> Result<(), EmulatorError> {
         Command::new("npm").args(["ci", "--no-audit", "--no-fund"]).current_dir(folder).stdin(Stdio::null()).output();
     match ran {
         Ok(output) if output.status.success() => Ok(()),
-        Ok(output) => Err(EmulatorError::NoPackages {
-            folder: folder.display().to_string(),
+        Ok(output) => Err(EmulatorError::Failed {
+            failure: format!("the emulator rp2040js could not be installed by `npm ci` in {}", folder.display()),
             output: String::from_utf8_lossy(&output.stderr).into_owned(),
         }),
-        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NoNpm),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err(EmulatorError::NotInstalled {
+            what: "the Pico's emulator rp2040js is fetched by npm, which",
+            command: "apt-get install npm".into(),
+        }),
         Err(error) => Err(EmulatorError::system("starting npm")(error)),
     }
 }

@@ -31,85 +31,88 @@ pub enum EmulatedBoard {
     PicoWithFrame,
 }
 
+/// What runs and builds a board's image.
+struct Tools {
+    /// Its emulator: the program, what needs it, and Debian's packages.
+    emulator: (&'static str, &'static str, &'static str),
+    /// The emulator's name for the board.
+    machine: &'static str,
+    /// The folder of the firmware, and the name of its image in there.
+    name: &'static str,
+    /// The compiler's name for the processor.
+    target: &'static str,
+    /// Options with which cargo builds the image.
+    options: &'static [&'static str],
+    /// The target folder relative to that of the firmware. It is shared by all images, except for the second image of a
+    /// name.
+    target_folder: &'static str,
+}
+
+const MPS2: Tools = Tools {
+    emulator: (EMULATOR, "the emulator", EMULATOR),
+    machine: "mps2-an386",
+    name: "board-mps2-an386",
+    target: "thumbv7em-none-eabihf",
+    options: &[],
+    target_folder: "../target",
+};
+const PICO: Tools = Tools {
+    emulator: (NODE, "the Pico's emulator runs on node, which", "nodejs npm"),
+    machine: "pico",
+    name: "board-pico",
+    target: "thumbv6m-none-eabi",
+    options: &["--no-default-features", "--features", "rp2040,everything"],
+    target_folder: "../target",
+};
+
 impl EmulatedBoard {
-    /// The folder of its firmware, and the name of its image in there.
-    pub fn name(self) -> &'static str {
+    fn tools(self) -> Tools {
         match self {
-            Self::Mps2An386 | Self::Mps2An505 => "board-mps2-an386",
-            Self::Pico | Self::PicoWithFrame => "board-pico",
+            Self::Mps2An386 => MPS2,
+            Self::Mps2An505 => Tools { machine: "mps2-an505", target: "thumbv8m.main-none-eabihf", ..MPS2 },
+            Self::Pico => PICO,
+            Self::PicoWithFrame => Tools {
+                machine: "pico-with-frame",
+                options: &["--no-default-features", "--features", "rp2040,grating,optical-frame"],
+                target_folder: "../target/optical-frame",
+                ..PICO
+            },
         }
     }
 
     /// The emulator's name for it.
     pub(super) fn machine(self) -> &'static str {
-        match self {
-            Self::Mps2An386 => "mps2-an386",
-            Self::Mps2An505 => "mps2-an505",
-            Self::Pico => "pico",
-            Self::PicoWithFrame => "pico-with-frame",
-        }
-    }
-
-    /// The compiler's name for its processor.
-    pub fn target(self) -> &'static str {
-        match self {
-            Self::Mps2An386 => "thumbv7em-none-eabihf",
-            Self::Mps2An505 => "thumbv8m.main-none-eabihf",
-            Self::Pico | Self::PicoWithFrame => "thumbv6m-none-eabi",
-        }
-    }
-
-    /// The arguments with which cargo builds its image, beside `build --release`.
-    pub fn build_arguments(self) -> &'static [&'static str] {
-        match self {
-            Self::Mps2An386 => &[],
-            Self::Mps2An505 => &["--target", "thumbv8m.main-none-eabihf"],
-            Self::Pico => {
-                &["--target", "thumbv6m-none-eabi", "--no-default-features", "--features", "rp2040,everything"]
-            }
-            Self::PicoWithFrame => &[
-                "--target",
-                "thumbv6m-none-eabi",
-                "--no-default-features",
-                "--features",
-                "rp2040,grating,optical-frame",
-            ],
-        }
-    }
-
-    /// The target folder relative to that of its firmware. It is shared by all images, except for the second image of a
-    /// name.
-    fn target_folder(self) -> &'static str {
-        match self {
-            Self::Mps2An386 | Self::Mps2An505 | Self::Pico => "../target",
-            Self::PicoWithFrame => "../target/optical-frame",
-        }
+        self.tools().machine
     }
 
     /// Returns an error if its emulator is not installed.
     fn emulator(self) -> Result<(), EmulatorError> {
-        let (program, missing) = match self {
-            Self::Mps2An386 | Self::Mps2An505 => (EMULATOR, EmulatorError::NoEmulator),
-            Self::Pico | Self::PicoWithFrame => (NODE, EmulatorError::NoNode),
-        };
+        let (program, what, packages) = self.tools().emulator;
         match Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status() {
             Ok(_) => Ok(()),
-            Err(error) if error.kind() == ErrorKind::NotFound => Err(missing),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Err(EmulatorError::NotInstalled { what, command: format!("apt-get install {packages}") })
+            }
             Err(error) => Err(EmulatorError::system("starting the emulator")(error)),
         }
     }
 
     /// Returns an error that names the missing tool for building and running this board. Does not check for the
     /// sources.
-    pub fn available(self) -> Result<(), EmulatorError> {
+    fn available(self) -> Result<(), EmulatorError> {
         self.emulator()?;
+        let target = self.tools().target;
         let output = Command::new("rustc")
-            .args(["--print", "target-libdir", "--target", self.target()])
+            .args(["--print", "target-libdir", "--target", target])
             .stderr(Stdio::null())
             .output()
             .map_err(|error| no_compiler_or("starting rustc", error))?;
         let libraries = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
-        if libraries.is_dir() { Ok(()) } else { Err(EmulatorError::NoTarget { target: self.target() }) }
+        if libraries.is_dir() {
+            return Ok(());
+        }
+        let what = "the compiler's target for the board";
+        Err(EmulatorError::NotInstalled { what, command: format!("rustup target add {target}") })
     }
 }
 
@@ -136,20 +139,24 @@ impl Image {
     /// this program was built.
     pub fn build(board: EmulatedBoard) -> Result<Self, EmulatorError> {
         board.available()?;
-        let folder = source_folder(&format!("firmware/{}", board.name()))?;
-        let target = folder.join(board.target_folder());
+        let Tools { name, target, options, target_folder, .. } = board.tools();
+        let folder = source_folder(&format!("firmware/{name}"))?;
+        let target_folder = folder.join(target_folder);
         let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-            .args(["build", "--release", "--locked", "--quiet", "--target-dir"])
-            .arg(&target)
-            .args(board.build_arguments())
+            .args(["build", "--release", "--locked", "--quiet", "--target", target, "--target-dir"])
+            .arg(&target_folder)
+            .args(options)
             .current_dir(&folder)
             .stdin(Stdio::null())
             .output()
             .map_err(|error| no_compiler_or("starting cargo", error))?;
         if !output.status.success() {
-            return Err(EmulatorError::NotBuilt { output: String::from_utf8_lossy(&output.stderr).into_owned() });
+            return Err(EmulatorError::Failed {
+                failure: "the emulated board's image does not compile".into(),
+                output: String::from_utf8_lossy(&output.stderr).into_owned(),
+            });
         }
-        Ok(Self { board, path: target.join(board.target()).join("release").join(board.name()) })
+        Ok(Self { board, path: target_folder.join(target).join("release").join(name) })
     }
 
     /// Where the image is.
@@ -174,7 +181,12 @@ fn beside(program: &Path, name: &str) -> Option<PathBuf> {
 }
 
 fn no_compiler_or(action: &'static str, error: io::Error) -> EmulatorError {
-    if error.kind() == ErrorKind::NotFound { EmulatorError::NoCompiler } else { EmulatorError::system(action)(error) }
+    if error.kind() != ErrorKind::NotFound {
+        return EmulatorError::system(action)(error);
+    }
+    let what = "the emulated board's image is not in the folder `images` beside this program, and building it needs \
+                Rust, which";
+    EmulatorError::NotInstalled { what, command: "curl https://sh.rustup.rs -sSf | sh".into() }
 }
 
 /// A folder in the checkout of a development build, whose tests run elsewhere. A release contains no path of the

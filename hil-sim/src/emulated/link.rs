@@ -1,22 +1,22 @@
 //! An emulated board that ticks by itself, with its serial port behind a pseudo-terminal.
 
 mod follower;
-mod serial;
 
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{self, Receiver};
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::os::unix::fs::OpenOptionsExt;
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use frixel_control::Drive;
 use frixel_exchange::{drive_of, layout};
+use rustix::fs::OFlags;
 
 use super::machine::Machine;
 use super::{EmulatorError, Image};
 use crate::{OutOfRange, RigTick, World, WorldFault};
-use follower::{ControlFlags, Follower};
-use serial::Serial;
+use follower::{Follower, Request};
 
 /// An instruction takes 8 ns of virtual time, similar to a Cortex-M4F at 170 MHz. Virtual time waits if it is ahead of
 /// wall time.
@@ -29,17 +29,18 @@ const WALL_TIMEOUT: Duration = Duration::from_mins(2);
 
 /// Faults that can be injected into an emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
 pub enum InjectedFault {
     /// The firmware panics.
-    Panic,
+    Panic = layout::INJECT_PANIC,
     /// The processor takes a hard fault.
-    HardFault,
+    HardFault = layout::INJECT_HARD_FAULT,
     /// A tick misses its deadline.
-    Overrun,
+    Overrun = layout::INJECT_OVERRUN,
     /// The stack overflows.
-    StackOverflow,
+    StackOverflow = layout::INJECT_STACK_OVERFLOW,
     /// The board is reset.
-    Reset,
+    Reset = layout::INJECT_RESET,
 }
 
 /// An emulated board with the host's end of its serial line, and its world.
@@ -53,7 +54,8 @@ pub struct LinkBoard {
     serial_path: String,
     world: Option<JoinHandle<Result<(), EmulatorError>>>,
     records: Receiver<RigTick>,
-    flags: Arc<ControlFlags>,
+    /// `None` once the world is to end.
+    requests: Option<Sender<Request>>,
 }
 
 impl LinkBoard {
@@ -63,16 +65,24 @@ impl LinkBoard {
         wait_for(&mut machine, layout::TICK, "its first tick")?;
         let output = machine.output()?;
         let serial_path = output.split_whitespace().find(|word| word.starts_with("/dev/")).map(str::to_owned);
-        let serial_path = serial_path.ok_or(EmulatorError::NoSerialPort { output })?;
-        let serial = Serial::open(&serial_path)?;
-        serial.write_zero()?;
+        let failure = "the emulator has not reported its serial port".into();
+        let serial_path = serial_path.ok_or(EmulatorError::Failed { failure, output })?;
+        // Held open, because the emulator checks only once a second whether a client has opened it.
+        let mut serial = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .custom_flags(OFlags::NOCTTY.bits() as i32)
+            .open(&serial_path)
+            .map_err(EmulatorError::system("opening the emulator's serial port"))?;
+        // A single zero byte, which the board ignores.
+        serial.write_all(&[0]).map_err(EmulatorError::system("writing to the emulator's serial port"))?;
         wait_for(&mut machine, layout::RECEIVED_BYTES, "reading a byte from its serial port")?;
-        let flags = Arc::new(ControlFlags::default());
         let memory = machine.memory.try_clone()?;
         let (sender, records) = mpsc::channel();
-        let follower = Follower::new(memory, serial, world, sender, Arc::clone(&flags));
+        let (requests, receiver) = mpsc::channel();
+        let follower = Follower::new(memory, serial, world, sender, receiver);
         let world = thread::spawn(move || follower.run());
-        Ok(Self { machine, serial_path, world: Some(world), records, flags })
+        Ok(Self { machine, serial_path, world: Some(world), records, requests: Some(requests) })
     }
 
     /// The pseudo-terminal that a host opens as its serial port.
@@ -87,13 +97,18 @@ impl LinkBoard {
 
     /// Starts the finger's stroke.
     pub fn start_stroke(&self) {
-        self.flags.stroke.store(true, Ordering::Release);
+        self.request(Request::Stroke);
+    }
+
+    /// Sends a request to the world. If the world has ended, [`Self::check`] returns the reason.
+    fn request(&self, request: Request) {
+        let _ = self.requests.as_ref().map(|requests| requests.send(request));
     }
 
     /// Causes a fault within a few milliseconds, for this many ticks.
     pub fn cause(&self, fault: WorldFault, ticks: u64) -> Result<(), OutOfRange> {
         fault.check()?;
-        self.flags.cause(fault, ticks);
+        self.request(Request::Fault(fault, ticks));
         Ok(())
     }
 
@@ -137,14 +152,7 @@ impl LinkBoard {
 
     /// Injects a fault into the firmware.
     pub fn inject(&self, fault: InjectedFault) -> Result<(), EmulatorError> {
-        let number = match fault {
-            InjectedFault::Panic => layout::INJECT_PANIC,
-            InjectedFault::HardFault => layout::INJECT_HARD_FAULT,
-            InjectedFault::Overrun => layout::INJECT_OVERRUN,
-            InjectedFault::StackOverflow => layout::INJECT_STACK_OVERFLOW,
-            InjectedFault::Reset => layout::INJECT_RESET,
-        };
-        self.machine.memory.set(layout::INJECTED_FAULT, number)
+        self.machine.memory.set(layout::INJECTED_FAULT, fault as u32)
     }
 
     /// Returns an error when the emulator or the world has ended.
@@ -159,7 +167,7 @@ impl LinkBoard {
 
 impl Drop for LinkBoard {
     fn drop(&mut self) {
-        self.flags.end.store(true, Ordering::Release);
+        self.requests = None;
         if let Some(world) = self.world.take() {
             // The result cannot be returned from `drop`.
             let _ = world.join();

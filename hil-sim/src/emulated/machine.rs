@@ -62,7 +62,7 @@ impl Machine {
     pub(super) fn check(&mut self) -> Result<(), EmulatorError> {
         match self.process.try_wait().map_err(EmulatorError::system("looking after the emulator"))? {
             None => Ok(()),
-            Some(_) => Err(EmulatorError::Ended { output: self.output()? }),
+            Some(_) => Err(EmulatorError::ended(self.output()?)),
         }
     }
 }

@@ -36,7 +36,7 @@ impl Memory {
 
     /// Sets a word.
     pub(super) fn set(&self, word: usize, value: u32) -> Result<(), EmulatorError> {
-        self.write(word, &value.to_le_bytes())
+        self.set_all(word, &[value])
     }
 
     /// Returns `count` words from `word` on.
@@ -49,16 +49,10 @@ impl Memory {
     /// Sets words from `word` on.
     pub(super) fn set_all(&self, word: usize, values: &[u32]) -> Result<(), EmulatorError> {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        self.write(word, &bytes)
+        self.0.write_all_at(&bytes, 4 * word as u64).map_err(EmulatorError::system("writing shared memory"))
     }
 
     fn read(&self, word: usize, bytes: &mut [u8]) -> Result<(), EmulatorError> {
-        let offset = 4 * word as u64;
-        self.0.read_exact_at(bytes, offset).map_err(EmulatorError::system("reading shared memory"))
-    }
-
-    fn write(&self, word: usize, bytes: &[u8]) -> Result<(), EmulatorError> {
-        let offset = 4 * word as u64;
-        self.0.write_all_at(bytes, offset).map_err(EmulatorError::system("writing shared memory"))
+        self.0.read_exact_at(bytes, 4 * word as u64).map_err(EmulatorError::system("reading shared memory"))
     }
 }

@@ -3,7 +3,6 @@
 mod board_rig;
 mod frame;
 mod injection;
-mod limits;
 mod orders;
 mod process;
 mod protocol;
@@ -15,6 +14,7 @@ use embedded_hal::delay::DelayNs;
 use frixel_control::{Board, Drive};
 use frixel_drivers::rp2::LIMITS_OFFSET;
 use frixel_session::Touch;
+use frixel_session::store::{CeilingPolicy, first_copy, write_limits};
 use frixel_wire::dac_code::DacCode;
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::message::{Command, Request as HostRequest};
@@ -59,8 +59,8 @@ pub struct BrokenInputs {
 ///
 /// Time is virtual and passes only in [`Self::step`], so it waits for a host on a busy machine. The world advances by
 /// one tick with each frame that the board sends at its beat, and at the same rate without frames. The board receives
-/// touch reports from its host; here, the touch source sends them over the same line, between the host's frames. An
-/// image with an optical frame receives them from [`Self::attach_frame`].
+/// touch reports from its host, which [takes](Self::take_touch_frames) them from the touch source and sends them between
+/// its own frames. An image with an optical frame receives them from [`Self::attach_frame`].
 #[derive(Debug)]
 pub struct PicoRig {
     process: Process,
@@ -80,8 +80,8 @@ pub struct PicoRig {
     /// Time since which the amplifier has been disabled and the DAC's output zero.
     zero_since: Option<Duration>,
     to_board: VecDeque<u8>,
-    /// Frames of the touch source for the host to send; `None` while the rig sends them itself.
-    touch_frames: Option<Vec<u8>>,
+    /// Frames of the touch source for the host to send.
+    touch_frames: Vec<u8>,
     at_host: Vec<u8>,
     events: Option<Vec<Stamped>>,
     /// The bytes sent to the board since its orders are watched.
@@ -95,7 +95,10 @@ impl PicoRig {
     /// is the board's.
     pub fn start(image: &Image, world: World) -> Result<Self, EmulatorError> {
         let mut rig = Self::factory_new(image, world)?;
-        let words = [&[LIMITS_OFFSET][..], &limits::stored(&Board::PICO.limits)?].concat();
+        let limits = write_limits(&Board::PICO.limits, CeilingPolicy::InForce)
+            .map_err(|error| EmulatorError::ended(format!("`Board::PICO` has no valid limits: {error}")))?;
+        // One byte per word.
+        let words = [&[LIMITS_OFFSET][..], &first_copy(&limits).map(u32::from)].concat();
         rig.process.request(Request::WriteFlash, &words)?;
         Ok(rig)
     }
@@ -116,7 +119,7 @@ impl PicoRig {
             amplifier_enable: false,
             zero_since: Some(Duration::ZERO),
             to_board: VecDeque::new(),
-            touch_frames: None,
+            touch_frames: Vec::new(),
             at_host: Vec::new(),
             events: None,
             watched_bytes: None,
@@ -176,19 +179,14 @@ impl PicoRig {
         self.events.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Leaves the touch source's frames to the caller, who takes them after every step and sends them on its own line.
-    pub(crate) fn hand_over_touch_frames(&mut self) {
-        self.touch_frames = Some(Vec::new());
+    /// Returns the touch source's frames since the last call. The host must [send](Self::send) them after every step.
+    pub fn take_touch_frames(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.touch_frames)
     }
 
-    /// The touch source's frames for the caller.
-    pub(crate) fn take_touch_frames(&mut self) -> Vec<u8> {
-        self.touch_frames.as_mut().map(std::mem::take).unwrap_or_default()
-    }
-
-    /// Whether there are frames of the touch source for the caller.
+    /// Whether the touch source has frames to send.
     pub(crate) fn has_touch_frames(&self) -> bool {
-        self.touch_frames.as_ref().is_some_and(|frames| !frames.is_empty())
+        !self.touch_frames.is_empty()
     }
 
     /// Sends whole frames from the host, so that frames of the touch source fit between them.
@@ -285,7 +283,7 @@ impl PicoRig {
         RigTick { tick: self.world.tick(), drive, felt, status: BoardView::None }
     }
 
-    /// Sends a touch report to the board.
+    /// Passes a touch report to the touch frame, or to the host.
     fn report(&mut self, touch: Touch) {
         if let Some(frame) = &mut self.frame {
             return frame.report(touch);
@@ -296,10 +294,7 @@ impl PicoRig {
         };
         let mut buffer = [0; FRAME_MAX_LEN];
         if let Ok(frame) = payload::request_frame(&HostRequest { sequence: TOUCH_SEQUENCE, command }, &mut buffer) {
-            match &mut self.touch_frames {
-                Some(frames) => frames.extend(frame),
-                None => self.to_board.extend(frame),
-            }
+            self.touch_frames.extend(frame);
         }
     }
 
@@ -307,7 +302,7 @@ impl PicoRig {
     fn follow(&mut self, events: &[Stamped]) {
         for stamped in events {
             let behind = stamped.at.saturating_sub(Duration::from_nanos(self.dac.now_ns()));
-            self.dac.delay().delay_ns(behind.as_nanos() as u32);
+            self.dac.delay_ns(behind.as_nanos() as u32);
             self.act(stamped.event);
             let is_zero = !self.amplifier_enable && self.output().dac_code.bits() == 0;
             self.zero_since = is_zero.then(|| self.zero_since.unwrap_or(stamped.at));
@@ -334,17 +329,11 @@ impl PicoRig {
                 self.dac.set_clear(false);
                 self.starts += 1;
             }
-            WireEvent::Light(_)
-            | WireEvent::MonitorRead { .. }
-            | WireEvent::I2cAddress { .. }
-            | WireEvent::I2cWrite(_)
-            | WireEvent::I2cRead
-            | WireEvent::I2cStop
-            | WireEvent::Scl(_) => {}
+            _ => {}
         }
     }
 }
 
 fn no_answer(what: &str) -> EmulatorError {
-    EmulatorError::Ended { output: format!("its answer to a request {what} is invalid") }
+    EmulatorError::ended(format!("its answer to a request {what} is invalid"))
 }

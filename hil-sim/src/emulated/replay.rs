@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use frixel_exchange::{OUTPUT_WORDS_MAX, TickOutput, layout};
+use frixel_exchange::{OUTPUT_WORDS_MAX, TickInput, TickOutput, layout};
 use frixel_wire::fault::Fault;
 use thiserror::Error;
 
@@ -11,8 +11,6 @@ use super::machine::Machine;
 use super::{EmulatorError, Image};
 use crate::Journal;
 
-/// Number of ticks sent to the board at a time.
-const BATCH_TICKS: usize = layout::BATCH_TICKS_MAX;
 /// Wall time between two checks whether a batch is done.
 const POLL_PERIOD: Duration = Duration::from_micros(200);
 /// Wall time allowed for a batch, which takes well under a second.
@@ -45,23 +43,21 @@ pub enum ReplayError {
 /// line.
 pub fn replay(image: &Image, journal: &Journal) -> Result<(), ReplayError> {
     let mut machine = Machine::start(image, layout::MODE_LOCKSTEP, &["-serial", "null"])?;
-    let mut from_tick = 0;
-    for batch in 1.. {
-        let ticks = BATCH_TICKS.min(journal.ticks() - from_tick);
-        if ticks == 0 {
-            break;
-        }
-        run(&mut machine, batch, journal.input_words(from_tick, ticks), ticks)?;
-        compare(&machine, journal, from_tick, ticks)?;
-        from_tick += ticks;
+    for (batch, ticks) in (1..).zip(journal.chunks(layout::BATCH_TICKS_MAX)) {
+        run(&mut machine, batch, ticks)?;
+        compare(&machine, ticks)?;
     }
     Ok(())
 }
 
 /// Runs one batch on the board and waits until it is done.
-fn run(machine: &mut Machine, batch: u32, inputs: &[u32], ticks: usize) -> Result<(), EmulatorError> {
-    machine.memory.set_all(layout::INPUTS, inputs)?;
-    machine.memory.set(layout::BATCH_TICKS, ticks as u32)?;
+fn run(machine: &mut Machine, batch: u32, ticks: &[(TickInput, TickOutput)]) -> Result<(), EmulatorError> {
+    let mut words = Vec::new();
+    for (input, _) in ticks {
+        input.write(|word| words.push(word));
+    }
+    machine.memory.set_all(layout::INPUTS, &words)?;
+    machine.memory.set(layout::BATCH_TICKS, ticks.len() as u32)?;
     machine.memory.set(layout::BATCH_GIVEN, batch)?;
     let begin = Instant::now();
     while machine.memory.get(layout::BATCH_DONE)? != batch {
@@ -86,18 +82,12 @@ fn check_starts(machine: &Machine) -> Result<(), EmulatorError> {
 }
 
 /// Compares one batch.
-fn compare(machine: &Machine, journal: &Journal, from_tick: usize, ticks: usize) -> Result<(), ReplayError> {
-    let expected = journal.output_words(from_tick, ticks);
-    if machine.memory.get_all(layout::OUTPUTS, expected.len())? == expected {
-        return Ok(());
-    }
-    let found = machine.memory.get_all(layout::OUTPUTS, ticks * OUTPUT_WORDS_MAX)?;
-    let (mut expected, mut found) = (expected.iter().copied(), found.into_iter());
-    for _ in 0..ticks {
-        let expected = TickOutput::read(|| expected.next().unwrap_or_default());
-        let found = TickOutput::read(|| found.next().unwrap_or_default());
-        if expected != found {
-            return Err(ReplayError::Mismatch(Box::new(Mismatch { expected, found })));
+fn compare(machine: &Machine, ticks: &[(TickInput, TickOutput)]) -> Result<(), ReplayError> {
+    let mut words = machine.memory.get_all(layout::OUTPUTS, ticks.len() * OUTPUT_WORDS_MAX)?.into_iter();
+    for (_, expected) in ticks {
+        let found = TickOutput::read(|| words.next().unwrap_or_default());
+        if found != *expected {
+            return Err(ReplayError::Mismatch(Box::new(Mismatch { expected: expected.clone(), found })));
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use crate::error::{OutOfRange, zero_to_ten};
+use crate::error::{OutOfRange, within, zero_to_ten};
 
 /// Distance over which friction follows its steady value, in m: the relaxation length of Dahl's law.
 ///
@@ -75,9 +75,10 @@ impl FingertipConfig {
     pub(super) fn validate(&self) -> Result<(), OutOfRange> {
         zero_to_ten("finger relaxation_length_m", self.relaxation_length_m)?;
         zero_to_ten("finger load_sd_n", self.load_sd_n)?;
-        within("finger load_exponent", "from -2 to 2", self.load_exponent, -2.0, 2.0)?;
+        within("finger load_exponent", -2.0..=2.0, "from -2 to 2", self.load_exponent)?;
         zero_to_ten("finger noise_rms_n", self.noise_rms_n)?;
-        within("finger leakage_hz", "from 0 to 10,000", self.leakage_hz, 0.0, 10e3)
+        within("finger leakage_hz", 0.0..=10e3, "from 0 to 10,000", self.leakage_hz)?;
+        Ok(())
     }
 }
 
@@ -86,8 +87,4 @@ impl Default for FingertipConfig {
     fn default() -> Self {
         Self::IDEAL
     }
-}
-
-fn within(name: &'static str, expected: &'static str, found: f64, least: f64, most: f64) -> Result<(), OutOfRange> {
-    if (least..=most).contains(&found) { Ok(()) } else { Err(OutOfRange { name, expected, found }) }
 }

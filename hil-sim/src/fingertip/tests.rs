@@ -2,9 +2,10 @@
 
 use core::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use super::{Fingertip, FingertipConfig, Friction, example_finger};
+use super::{Fingertip, FingertipConfig, example_finger};
 use crate::amplifier::Output;
 use crate::stroke::FingerState;
+use crate::world::Felt;
 use frixel_felt::band_rms;
 
 const TICK_HZ: u32 = 40_000;
@@ -26,17 +27,20 @@ impl Slide {
         Self { fingertip, tick_hz, x_m: 0.01 }
     }
 
-    fn tick(&mut self, mean_square_v2: f64, speed_m_per_s: f64) -> Friction {
+    fn tick(&mut self, mean_square_v2: f64, speed_m_per_s: f64) -> Felt {
         self.tick_under(mean_square_v2, speed_m_per_s, None)
     }
 
-    /// A tick over a square carrier, which has no mean.
-    fn tick_under(&mut self, mean_square_v2: f64, speed_m_per_s: f64, load_n: Option<f64>) -> Friction {
+    fn tick_under(&mut self, mean_square_v2: f64, speed_m_per_s: f64, load_n: Option<f64>) -> Felt {
         self.x_m += speed_m_per_s / f64::from(self.tick_hz);
-        let output = Output { mean_v: 0.0, variance_v2: mean_square_v2, mean_square_v2, end_v: 0.0 };
         let finger = FingerState { x_m: self.x_m, y_m: 0.03, speed_m_per_s: speed_m_per_s.abs() };
-        self.fingertip.slide(&output, &finger, load_n)
+        self.fingertip.slide(&over(mean_square_v2), &finger, load_n)
     }
+}
+
+/// A square carrier, which has no mean.
+fn over(mean_square_v2: f64) -> Output {
+    Output { mean_v: 0.0, variance_v2: mean_square_v2, mean_square_v2, end_v: 0.0 }
 }
 
 /// A finger with one effect on top of the ideal ones.
@@ -133,7 +137,7 @@ fn a_lifted_finger_feels_nothing_and_starts_afresh() {
         for _ in 0..1000 {
             slide.tick(10_000.0, 0.1);
         }
-        let lifted = slide.fingertip.lift();
+        let lifted = slide.fingertip.lift(&over(0.0));
         assert_eq!((lifted.natural_friction_n, lifted.electric_friction_n), (0.0, 0.0));
         let touching = slide.tick(10_000.0, 0.0);
         assert_eq!((touching.natural_friction_n, touching.electric_friction_n), (natural_n, 0.0));

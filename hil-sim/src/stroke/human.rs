@@ -14,10 +14,8 @@ use crate::error::{OutOfRange, above_zero};
 use crate::random::{Purpose, Random};
 
 /// Seeds of [`Stroke::human`](super::Stroke::human) and [`Stroke::human_rough`](super::Stroke::human_rough) for
-/// evaluation in tests and tables. Do not tune on them.
+/// evaluation in tests and tables. Tune constants and train predictors on larger seeds.
 pub const HUMAN_TEST_SEEDS: RangeInclusive<u64> = 1..=999;
-/// Seeds of the same strokes for tuning constants and training predictors. Do not evaluate on them.
-pub const HUMAN_TUNING_SEEDS: RangeInclusive<u64> = 1001..=1999;
 
 /// Median speeds of about 1,300 strokes recorded on a surface-haptic tablet, m/s.
 const MEDIANS_M_PER_S: [f64; 2] = [0.048, 0.436];

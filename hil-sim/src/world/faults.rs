@@ -6,7 +6,7 @@ use frixel_control::Drive;
 use frixel_session::Touch;
 use frixel_wire::dac_code::DacCode;
 
-use crate::amplifier::{AmplifierConfig, Decay};
+use crate::amplifier::AmplifierConfig;
 use crate::error::OutOfRange;
 
 /// A fault around a board.
@@ -55,7 +55,7 @@ impl WorldFault {
     /// The amplifier with this fault.
     fn of_amplifier(self, amplifier: AmplifierConfig) -> AmplifierConfig {
         match self {
-            Self::AmplifierStuckOn => AmplifierConfig { decay: Decay::Linear { v_per_s: 0.0 }, ..amplifier },
+            Self::AmplifierStuckOn => AmplifierConfig { is_stuck_on: true, ..amplifier },
             Self::AmplifierGain(gain) => AmplifierConfig { gain: amplifier.gain * gain, ..amplifier },
             Self::AmplifierSlowOff { delay_s } => AmplifierConfig { turn_off_delay_s: delay_s, ..amplifier },
             Self::MonitorGain(monitor_gain) => AmplifierConfig { monitor_gain, ..amplifier },

@@ -106,7 +106,12 @@ impl Bench {
 
     /// Lets one tick pass, without a host.
     pub(super) fn step(&self) -> RigTick {
-        let record = self.with(|rig| rig.step().unwrap());
+        let record = self.with(|rig| {
+            let record = rig.step().unwrap();
+            let touch_frames = rig.take_touch_frames();
+            rig.send(&touch_frames);
+            record
+        });
         self.records.borrow_mut().push(record);
         record
     }

@@ -1,42 +1,30 @@
 //! The world of a self-ticking board: it follows the board's output.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::fs::File;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 
 use frixel_control::Drive;
 use frixel_exchange::{BOARD, STAMPED_TOUCH_WORDS, StampedTouch, drive_of, layout};
 
 use super::POLL_PERIOD;
-use super::serial::Serial;
 use crate::emulated::EmulatorError;
 use crate::emulated::memory::Memory;
 use crate::{BoardView, RigTick, World, WorldFault};
 
-/// Requests from the board's owner to the world's thread.
-#[derive(Debug, Default)]
-pub(super) struct ControlFlags {
-    pub(super) end: AtomicBool,
-    pub(super) stroke: AtomicBool,
-    /// Pending faults of the world, each with its duration in ticks.
-    faults: Mutex<Vec<(WorldFault, u64)>>,
-}
-
-impl ControlFlags {
-    pub(super) fn cause(&self, fault: WorldFault, ticks: u64) {
-        self.faults.lock().unwrap_or_else(PoisonError::into_inner).push((fault, ticks));
-    }
-
-    fn take_faults(&self) -> Vec<(WorldFault, u64)> {
-        std::mem::take(&mut *self.faults.lock().unwrap_or_else(PoisonError::into_inner))
-    }
+/// A request from the board's owner to the world's thread.
+#[derive(Debug)]
+pub(super) enum Request {
+    /// Starts the stroke.
+    Stroke,
+    /// Causes a fault of the world for a number of ticks.
+    Fault(WorldFault, u64),
 }
 
 /// A world that follows the board's output.
 pub(super) struct Follower {
     memory: Memory,
-    serial: Serial,
+    /// The host's end of the serial port.
+    serial: File,
     world: World,
     records: Sender<RigTick>,
     /// Number of drives that have been processed.
@@ -45,44 +33,45 @@ pub(super) struct Follower {
     reports: u32,
     /// Broken inputs of the board, each with its word and the end of the fault in ticks of the world.
     broken: Vec<(u64, usize)>,
-    flags: Arc<ControlFlags>,
+    requests: Receiver<Request>,
 }
 
 impl Follower {
     pub(super) fn new(
         memory: Memory,
-        serial: Serial,
+        serial: File,
         world: World,
         records: Sender<RigTick>,
-        flags: Arc<ControlFlags>,
+        requests: Receiver<Request>,
     ) -> Self {
-        Self { memory, serial, world, records, seen: 0, reports: 0, broken: Vec::new(), flags }
+        Self { memory, serial, world, records, seen: 0, reports: 0, broken: Vec::new(), requests }
     }
 
-    /// Follows the board until the owner requests the end.
+    /// Follows the board until the owner drops its end of the requests.
     pub(super) fn run(mut self) -> Result<(), EmulatorError> {
-        while !self.flags.end.load(Ordering::Acquire) {
-            if self.flags.stroke.swap(false, Ordering::AcqRel) {
-                self.world.start_stroke();
+        loop {
+            match self.requests.recv_timeout(POLL_PERIOD) {
+                Ok(Request::Stroke) => self.world.start_stroke(),
+                Ok(Request::Fault(fault, ticks)) => self.begin_fault(fault, ticks)?,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
             }
-            self.begin_faults()?;
             self.follow()?;
             self.end_faults()?;
-            self.serial.accept_next_host()?;
-            thread::sleep(POLL_PERIOD);
+            // Ends exclusive mode, in which a host may have opened the port. It lasts as long as any process has the
+            // port open.
+            rustix::termios::ioctl_tiocnxcl(&self.serial)
+                .map_err(|error| EmulatorError::system("freeing the emulator's serial port")(error.into()))?;
         }
-        Ok(())
     }
 
-    /// Starts the requested faults, in the world and at the inputs simulated on the board.
-    fn begin_faults(&mut self) -> Result<(), EmulatorError> {
-        for (fault, ticks) in self.flags.take_faults() {
-            // `LinkBoard::cause` has checked the fault.
-            let _ = self.world.cause(fault, ticks);
-            if let Some((word, value)) = broken_input(fault) {
-                self.memory.set(word, value)?;
-                self.broken.push((self.world.tick().saturating_add(ticks), word));
-            }
+    /// Starts a fault, in the world and at the inputs simulated on the board.
+    fn begin_fault(&mut self, fault: WorldFault, ticks: u64) -> Result<(), EmulatorError> {
+        // `LinkBoard::cause` has checked the fault.
+        let _ = self.world.cause(fault, ticks);
+        if let Some((word, value)) = broken_input(fault) {
+            self.memory.set(word, value)?;
+            self.broken.push((self.world.tick().saturating_add(ticks), word));
         }
         Ok(())
     }

@@ -30,7 +30,6 @@ impl PicoBoardRig {
         while rig.now() < SWITCH_TIME {
             rig.step()?;
         }
-        rig.hand_over_touch_frames();
         Ok(Self { rig, switch_open_until: None })
     }
 

@@ -70,8 +70,8 @@ impl TouchFrame {
 
     /// Its inputs for a run: whether data is ready, and whether SDA and SCL are held low.
     pub(super) fn inputs(&self) -> u32 {
-        let Ok(is_ready) = self.module.data_ready().is_high();
-        let sda_is_held = self.holds_sda.as_ref().is_some_and(|bus| matches!(bus.sda().is_low(), Ok(true)));
+        let is_ready = self.module.waiting() > 0;
+        let sda_is_held = self.holds_sda.as_ref().is_some_and(|bus| matches!(bus.clone().is_low(), Ok(true)));
         let inputs = [(is_ready, FRAME_READY), (sda_is_held, SDA_HELD), (self.holds_scl, SCL_HELD)];
         inputs.into_iter().map(|(is_set, input)| if is_set { input } else { 0 }).sum()
     }
@@ -94,8 +94,8 @@ impl TouchFrame {
                 None
             }
             WireEvent::Scl(is_high) => {
-                if let Some(bus) = &self.holds_sda {
-                    let Ok(()) = if is_high { bus.scl().set_high() } else { bus.scl().set_low() };
+                if let Some(bus) = &mut self.holds_sda {
+                    let Ok(()) = if is_high { bus.set_high() } else { bus.set_low() };
                 }
                 None
             }
@@ -115,7 +115,7 @@ impl TouchFrame {
         self.restarts_after = self.restarts_after.map(|bytes| bytes - 1);
         let waiting = self.module.waiting();
         let mut byte = [RELEASED];
-        let _ = poll_once(std::pin::pin!(self.module.bus().read(I2C_ADDRESS, &mut byte)));
+        let _ = poll_once(std::pin::pin!(self.module.read(I2C_ADDRESS, &mut byte)));
         self.has_ended = self.module.waiting() < waiting;
         byte[0]
     }
@@ -124,7 +124,7 @@ impl TouchFrame {
         self.has_ended = false;
         let written = std::mem::take(&mut self.written);
         if !written.is_empty() {
-            let _ = poll_once(std::pin::pin!(self.module.bus().write(I2C_ADDRESS, &written)));
+            let _ = poll_once(std::pin::pin!(self.module.write(I2C_ADDRESS, &written)));
         }
     }
 }

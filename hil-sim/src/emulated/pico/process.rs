@@ -45,7 +45,7 @@ impl Process {
             .spawn()
             .map_err(EmulatorError::system("starting the emulator"))?;
         let (Some(to), Some(from)) = (child.stdin.take(), child.stdout.take()) else {
-            return Err(EmulatorError::Ended { output: "it has no pipes".into() });
+            return Err(EmulatorError::ended("it has no pipes"));
         };
         Ok(Self { child, to, from: BufReader::new(from), errors })
     }
@@ -94,7 +94,7 @@ impl Process {
         let _ = self.child.kill();
         let _ = self.child.wait();
         match self.last_errors() {
-            Ok(output) => EmulatorError::Ended { output },
+            Ok(output) => EmulatorError::ended(output),
             Err(error) => EmulatorError::system("reading what the emulator says")(error),
         }
     }

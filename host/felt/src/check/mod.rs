@@ -7,7 +7,7 @@ mod board;
 pub mod feel;
 mod text;
 
-use frixel_hil_sim::{BoardMemory, RigConfig};
+use frixel_hil_sim::{RigConfig, active_bytes_filled, table_rows};
 use frixel_layers::Scene as WireScene;
 use frixel_model::InverseTable;
 use frixel_scene::{Program, TargetRange, middle_mm};
@@ -36,8 +36,8 @@ impl BoardCosts {
         let scene = program.scene_bytes();
         // This cannot fail: the board has parsed the same bytes.
         let taken = WireScene::parse(&scene).ok();
-        let active_bytes = taken.as_ref().map_or(0, BoardMemory::bytes_filled);
-        let table = taken.and_then(|scene| BoardMemory::table_rows(&scene, &rig.board).ok());
+        let active_bytes = taken.as_ref().map_or(0, active_bytes_filled);
+        let table = taken.and_then(|scene| table_rows(&scene, &rig.board).ok());
         let (table_rows, table_rows_whole) = table.map_or((0, 0), |rows| (rows.filled, rows.whole));
         Self { wire_total_bytes: wire_total_bytes as usize, active_bytes, table_rows, table_rows_whole }
     }
