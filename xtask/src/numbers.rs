@@ -84,6 +84,10 @@ const TABLES: [Table; 4] = [
             ("RAM without stacks, one grating", "ram_grating_only"),
             ("deepest stack without a panic, everything", "stack_full"),
             ("deepest stack without a panic, one grating", "stack_grating_only"),
+            ("deepest stack of bring-up, formatting apart", "stack_bring_up"),
+            ("deepest stack of the self-test, formatting apart", "stack_self_test"),
+            ("code of the tick, everything", "tick_code_full"),
+            ("code of the tick, one grating", "tick_code_grating_only"),
         ],
     },
 ];

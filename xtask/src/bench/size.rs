@@ -60,6 +60,8 @@ const IMAGES: [Images; 3] = [
         exceptions: &["TIM3", "NonMaskableInt"],
     },
 ];
+/// The NUCLEO's programs beside the firmware, which share its memory.
+const G474_PROGRAMS: [&str; 2] = ["bring-up", "self-test"];
 /// Where RAM begins on every Cortex-M.
 const RAM: u64 = 0x2000_0000;
 const PERIPHERALS: u64 = 0x4000_0000;
@@ -75,9 +77,16 @@ pub(super) fn measure(figures: &mut Figures) -> Result<(), String> {
             figures.insert(format!("{name}.ram_{build}"), ram);
             let functions = Functions::read(&path)?;
             // If a tick panicked, the voltage would remain on the electrode until the one-shot expires.
-            functions.never_ends(tick)?;
+            figures.insert(format!("{name}.tick_code_{build}"), functions.code_that_never_ends(tick)?);
             if !exceptions.is_empty() {
                 measure_stack(figures, format!("{name}.stack_{build}"), &functions, exceptions);
+            }
+            if (*name, *build) == ("g474", "full") {
+                for program in G474_PROGRAMS {
+                    let functions = Functions::read(&path.with_file_name(program))?.without_formatting();
+                    let name = format!("{name}.stack_{}", program.replace('-', "_"));
+                    measure_stack(figures, name, &functions, exceptions);
+                }
             }
         }
     }

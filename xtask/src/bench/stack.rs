@@ -20,6 +20,9 @@ const EXCEPTION_BYTES: u64 = 27 * 4;
 /// Parts of the names of functions that end the program; the last one overflows the stack for a test.
 const ENDS: [&str; 5] = ["panic", "rust_begin_unwind", "5fault15Ending", "5fault5never", "15fault_injection8overflow"];
 
+/// Part of the names of functions that format texts and numbers.
+const FORMATS: &str = "4core3fmt";
+
 /// Prefix of the names of functions that the linker outlined from several functions.
 const OUTLINED: &str = "OUTLINED_FUNCTION";
 
@@ -100,11 +103,26 @@ impl Functions {
         Ok(bytes + EXCEPTION_BYTES)
     }
 
-    /// Fails if a function can end the program. The error states where.
-    pub(super) fn never_ends(&self, name: &str) -> Result<(), String> {
-        let (mut open, mut seen) = (vec![self.address_of(name)?], BTreeSet::new());
+    /// Leaves out the formatting of texts and numbers, whose calls through tables cannot be followed.
+    pub(super) fn without_formatting(mut self) -> Self {
+        let formats: BTreeSet<u32> = self
+            .0
+            .iter()
+            .filter(|(_, function)| function.name.contains(FORMATS))
+            .map(|(address, _)| *address)
+            .collect();
+        for function in self.0.values_mut() {
+            function.calls.retain(|call| !formats.contains(call));
+        }
+        self
+    }
+
+    /// The bytes of code that a function runs. Fails if it can end the program; the error states where.
+    pub(super) fn code_that_never_ends(&self, name: &str) -> Result<u64, String> {
+        let (mut open, mut seen, mut bytes) = (vec![self.address_of(name)?], BTreeSet::new(), 0);
         while let Some(address) = open.pop() {
             let Some(function) = self.0.get(&address).filter(|_| seen.insert(address)) else { continue };
+            bytes += u64::from(function.len);
             if DIVIDES.iter().any(|divides| function.name.contains(divides)) {
                 continue;
             }
@@ -114,7 +132,7 @@ impl Functions {
             }
             open.extend(&function.calls);
         }
-        Ok(())
+        Ok(bytes)
     }
 
     fn depth_of(&self, name: &str) -> Result<u64, String> {
@@ -213,8 +231,11 @@ impl Function {
 mod tests {
     use super::*;
 
+    /// Bytes of code of each function.
+    const LEN: u32 = 12;
+
     fn function(name: &str, own_bytes: u64, calls: &[u32]) -> Function {
-        Function { name: name.to_owned(), own_bytes, calls: calls.to_vec(), ..Function::default() }
+        Function { name: name.to_owned(), len: LEN, own_bytes, calls: calls.to_vec(), ..Function::default() }
     }
 
     #[test]
@@ -255,10 +276,20 @@ mod tests {
         ]));
         assert_eq!(functions.depth("main", &["tick"]), Ok(8 + 100 + 16 + 4 + 108 + 40 + 108));
         assert!(functions.depth("tock", &[]).is_err());
-        assert_eq!(functions.never_ends("tick"), Ok(()));
-        assert!(functions.never_ends("main").unwrap_err().contains("by way of deep"));
+        assert_eq!(functions.code_that_never_ends("tick"), Ok(LEN.into()));
+        assert!(functions.code_that_never_ends("main").unwrap_err().contains("by way of deep"));
         functions.0.insert(0x60, function("leaf", 4, &[0x30]));
         let refused = functions.depth("main", &[]).unwrap_err();
         assert!(refused.contains("calls itself"), "{refused}");
+    }
+
+    #[test]
+    fn formatting_is_left_out_where_it_cannot_be_followed() {
+        let functions = || {
+            let formats = Function { calls_register: true, ..function("_RNvNtCs7ldSeZOOJos_4core3fmt5write", 50, &[]) };
+            Functions(BTreeMap::from([(0x10, function("main", 8, &[0x20])), (0x20, formats)]))
+        };
+        assert!(functions().depth("main", &[]).is_err());
+        assert_eq!(functions().without_formatting().depth("main", &[]), Ok(8 + 108));
     }
 }
