@@ -17,11 +17,6 @@ pub struct Preview {
     pub map_max: (u32, u32),
 }
 
-impl Preview {
-    /// Largest width and height that a person may ask for, in pixels.
-    pub const SIDE_MAX_PX: u32 = 4_000;
-}
-
 impl Default for Preview {
     /// 100 mm/s, within 1,000 by 800 pixels.
     fn default() -> Self {

@@ -48,7 +48,6 @@ mod _frixel {
     use super::sweep::{play_cell, study_files, sweep_cells};
 
     use frixel_driver::DURATION_MAX_S;
-    use frixel_felt::Preview;
     use frixel_hil_sim::Board;
     use frixel_lab::calibration::{REACH, VOLTAGE_MAX_V_RMS};
     use frixel_lab::score::{JOBS_MAX, TrialPlan};
@@ -66,7 +65,6 @@ mod _frixel {
         module.add("STROKE_S", TrialPlan::SECONDS)?;
         module.add("COUNT_MAX", TrialPlan::COUNT_MAX)?;
         module.add("JOBS_MAX", JOBS_MAX)?;
-        module.add("MAP_SIDE_MAX_PX", Preview::SIDE_MAX_PX)?;
         module.add("MEDIAN_SPEEDS_MM_PER_S", TrialPlan::MEDIAN_SPEEDS_MM_PER_S.into_inner())?;
         module.add("STROKE_MAX_S", STROKE_MAX_S)?;
         module.add("TRIGGER_MAX_S", DURATION_MAX_S)?;

@@ -131,7 +131,7 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         ),
         (lambda: Simulator(FLAT, finger="me.toml"), "Finger.load reads a file"),
         (lambda: Simulator(FLAT, finger=3), "a finger is a Finger, a name, or a table, found 3"),  # type: ignore[arg-type]
-        (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 4000, found 0"),
+        (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
         (lambda: Stroke.straight((1,), (2, 3)), "from_mm is x and y in mm"),  # type: ignore[arg-type]
         (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
         (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),

@@ -32,7 +32,7 @@ pub(super) struct PreviewArgs {
     speed_mm_per_s: f64,
     /// Largest width of the map, in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 1_000)]
-    #[arg(value_parser = whole(100..=Preview::SIDE_MAX_PX), allow_negative_numbers = true)]
+    #[arg(value_parser = whole(100..=4_000_u32), allow_negative_numbers = true)]
     map_width: u32,
 }
 

@@ -5,7 +5,6 @@ use super::span::{Extremes, Span, TracedLayer};
 use super::trace::Trace;
 use super::{DrawingError, Subject, svg};
 use frixel_chart::{Axis, Chart, Line, Look, Margins, PALETTE, Panel, RGBColor, Strip, StripCell};
-use frixel_felt::percentiles;
 use frixel_scene::Reach;
 
 const REFERENCE: RGBColor = RGBColor(0xf2, 0xb1, 0x34);
@@ -147,7 +146,9 @@ fn extremes(spans: &[Span], part: Part) -> Option<Extremes> {
 /// The extremes over the spans in which friction is at least half of its median. Where a finger lands or turns, its
 /// friction goes through zero within micrometres, which would leave little of the axis for the scene.
 fn while_sliding(spans: &[Span], part: Part) -> Option<Extremes> {
-    let [median] = percentiles(spans.iter().filter_map(part).map(|range| range.least).collect(), [50])?;
+    let mut lows: Vec<f64> = spans.iter().filter_map(part).map(|range| range.least).collect();
+    lows.sort_by(f64::total_cmp);
+    let median = lows.get(lows.len() / 2).copied()?;
     spans.iter().filter_map(part).filter(|range| range.least >= 0.5 * median).reduce(Extremes::joined)
 }
 

@@ -1,7 +1,6 @@
 //! Downsampling of rows for pictures, in memory that does not grow with the length of a play.
 
 use frixel_felt::judge::SLIDE_MIN_M_PER_S;
-use frixel_felt::percentiles;
 use frixel_felt::recorder::FeltRow;
 use frixel_scene::LayerTitle;
 
@@ -57,7 +56,9 @@ impl Speeds {
     }
 
     fn median_mm_s(&self) -> Option<f64> {
-        percentiles(self.mm_s.clone(), [50]).map(|[median]| median)
+        let mut sorted = self.mm_s.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied()
     }
 }
 

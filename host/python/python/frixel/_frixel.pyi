@@ -18,7 +18,6 @@ SEEDS: int
 STROKE_S: float
 COUNT_MAX: int
 JOBS_MAX: int
-MAP_SIDE_MAX_PX: int
 MEDIAN_SPEEDS_MM_PER_S: tuple[float, float]
 STROKE_MAX_S: float
 TRIGGER_MAX_S: float

@@ -23,6 +23,8 @@ from .profiles import Finger, Screen, TouchSource
 
 __all__ = ["Scene"]
 
+MAP_MAX_PX = 10_000
+"""Largest width and height of a map, pixels."""
 SPEED_MAX_MM_S = 10_000.0
 """Fastest finger of a map, mm/s."""
 
@@ -191,7 +193,7 @@ class Scene:
         Parameters
         ----------
         width, height
-            Largest size in pixels, from 1 to 4,000; the map has the proportions of the screen.
+            Largest size in pixels, from 1 to 10,000; the map has the proportions of the screen.
         speed_mm_s
             Sliding speed of the finger, from 0 to 10,000 mm/s, for layers that depend on it.
 
@@ -207,8 +209,8 @@ class Scene:
             A value is out of range.
         """
         return self.compiled.map(
-            whole("width", width, 1, _frixel.MAP_SIDE_MAX_PX),
-            whole("height", height, 1, _frixel.MAP_SIDE_MAX_PX),
+            whole("width", width, 1, MAP_MAX_PX),
+            whole("height", height, 1, MAP_MAX_PX),
             1e-3 * number("speed_mm_s", speed_mm_s, 0.0, SPEED_MAX_MM_S),
         )[0]
 

@@ -14,7 +14,6 @@ use std::time::Duration;
 
 use clap::Parser;
 use frixel_driver::{Device, PollingLink, ignore_progress};
-use frixel_felt::percentiles;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{
     Board, BoardMemory, BoardView, FingertipConfig, OwnFinger, Person, Point, Rig, RigConfig, RigTick, Stroke,
@@ -181,8 +180,9 @@ impl Tally {
     }
 
     fn median_half_width(&self) -> f64 {
-        let widths = self.outcomes.iter().map(|outcome| outcome.half_width).collect();
-        percentiles(widths, [50]).map_or(f64::NAN, |[median]| median)
+        let mut widths: Vec<f64> = self.outcomes.iter().map(|outcome| outcome.half_width).collect();
+        widths.sort_by(f64::total_cmp);
+        widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
     /// Share of the intervals that contain the truth, and the standard error of that share over people.
