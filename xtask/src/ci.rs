@@ -43,7 +43,10 @@ const STEPS: [Step; 14] = [
     Step {
         name: "docs",
         programs: &[],
-        run: || run_lines(&["cargo --config build.rustdocflags=['-Dwarnings'] doc --workspace --no-deps --locked"]),
+        run: || {
+            let mut doc = cargo_in(".");
+            run("docs", doc.args(["doc", "--workspace", "--no-deps", "--locked"]).env("RUSTDOCFLAGS", "-D warnings"))
+        },
     },
     Step { name: "wasm", programs: &[], run: || run_lines(&PAGE_CRATES) },
     Step { name: "scripts", programs: &["node", "npm"], run: studio_tests::check_scripts },

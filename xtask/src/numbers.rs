@@ -121,7 +121,8 @@ fn differences(measured: &Figures, committed: &BTreeMap<String, Value>) -> Resul
         let holds = measured.zip(committed).is_some_and(is_near);
         (!holds).then(|| format!("{name}: measured {}, committed {}", text(measured), text(committed)))
     };
-    let is_count = |name: &&str| ![".flash_", ".ram_", ".stack"].iter().any(|bytes| name.contains(bytes));
+    let is_count =
+        |name: &&str| ![".flash_", ".ram_", ".stack", ".tick_code_"].iter().any(|bytes| name.contains(bytes));
     let names: BTreeSet<&str> = measured.keys().chain(committed.keys()).map(String::as_str).collect();
     let found: Vec<String> =
         names.into_iter().filter(|name| *name != "date" && is_count(name)).filter_map(difference).collect();

@@ -13,7 +13,9 @@ const TIME: Column = Column::new("t_s", "seconds").converted(Unit::SECONDS);
 const X: Column = Column::new("x_mm", "mm from the left edge of the screen").converted(Unit::MILLIMETRES);
 const Y: Column = Column::new("y_mm", "mm from the top edge of the screen").converted(Unit::MILLIMETRES);
 /// The normal load, which may be left out.
-const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::NEWTONS);
+pub(crate) const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::NEWTONS);
+/// The columns that a stroke needs.
+pub(crate) const COLUMNS: [Column; 3] = [TIME, X, Y];
 /// Columns of a play that a stroke does not need.
 const OF_A_PLAY: [&str; 10] = [
     "speed_mm_s",

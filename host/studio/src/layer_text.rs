@@ -61,11 +61,6 @@ pub(crate) fn read(text: &str) -> Result<String, TextError> {
     Ok(format!("{{\"values\":{},\"lines\":[{lines}]}}", json::of(root.get_ref())))
 }
 
-/// The number of fields and tables outside of others; 0 for a text that is not TOML.
-pub(crate) fn field_count(text: &str) -> usize {
-    parsed(text).map_or(0, |root| root.get_ref().as_table().map_or(0, toml::map::Map::len))
-}
-
 /// Carries out an edit, and returns the new text. The request has these parts, with a zero character between:
 ///
 /// | parts | edit |

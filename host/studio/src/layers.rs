@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<Value> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;
-        let live = program.layers.records(&number.to_string());
+        let live: Result<Vec<Vec<u8>>, _> = layers.iter().map(|layer| program.layers.records(layer)).collect();
         // Of its first copy.
         let felt = judgement.layers.iter().find(|layer| layer.layer.number().table == number);
         let mut layer = json!({
@@ -20,13 +20,13 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &
             "kind": kind,
             "felt": felt.map_or_else(String::new, feel::sentence),
             "perceived": felt.map(perceived),
-            "copies": layers.len(),
+            "controls": layers,
             "isLive": live.is_ok(),
             "startsOn": starts_on,
             "gain": gain,
             "gainMin": range::GAIN.min,
             "gainMax": range::GAIN.max,
-            "gainReach": live.as_ref().ok().and_then(|records| gain_reach(program, records)),
+            "gainReach": live.as_ref().ok().and_then(|records| gain_reach(program, &records.concat())),
             "whyNotLive": live.err().map_or(String::new(), |error| error.to_string()),
             "from": lines,
             "boxMm": bounds_mm.or_else(|| outline_mm(program, number)),

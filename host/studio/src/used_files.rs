@@ -3,12 +3,10 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use frixel_hil_sim::TouchConfig;
-use frixel_scene::{FileUnavailable, Files, FingerProfile, Profile, Scene, Screen};
+use frixel_scene::{FileUnavailable, Files, Scene};
 use serde_json::{Value, json};
 
 use crate::host_error::HostError;
-use crate::layer_text;
 use crate::program::ProgramError;
 use crate::request::Request;
 
@@ -24,21 +22,19 @@ pub fn used_files(request: &Request) -> Result<Value, HostError> {
     Ok(json!({ "names": files.names.into_inner(), "isWhole": is_whole, "kind": kind }))
 }
 
-/// What a text is: the profile whose reader knows most of its fields, if one knows more of them than it has mistakes.
-/// All else is read as a scene, to show its mistakes.
-fn kind(text: &str) -> &'static str {
-    let fields = layer_text::field_count(text);
-    let profiles = [
-        ("finger", mistakes::<FingerProfile>(text)),
-        ("screen", mistakes::<Screen>(text)),
-        ("touch", mistakes::<TouchConfig>(text)),
-    ];
-    let nearest = profiles.into_iter().min_by_key(|(_, mistakes)| *mistakes);
-    nearest.filter(|(_, mistakes)| *mistakes < fields).map_or("scene", |(kind, _)| kind)
-}
+/// Beginnings of lines that only scenes have.
+const OF_SCENES: [&str; 5] = ["version", "[[layer", "[defaults", "[finger", "[screen"];
+/// A field that each kind of profile has.
+const OF_PROFILES: [(&str, &str); 3] =
+    [("friction_coefficient", "finger"), ("reports_per_s", "touch"), ("width_mm", "screen")];
 
-fn mistakes<P: Profile>(text: &str) -> usize {
-    P::parse(text, P::KIND).err().map_or(0, |error| error.diagnostics.len())
+/// What a text is, by its fields, so that a profile with mistakes is one, too. All else is read as a scene.
+fn kind(text: &str) -> &'static str {
+    let begins = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
+    if OF_SCENES.into_iter().any(begins) {
+        return "scene";
+    }
+    OF_PROFILES.into_iter().find(|(field, _)| begins(field)).map_or("scene", |(_, kind)| kind)
 }
 
 /// Files, and the names that were read.

@@ -79,8 +79,8 @@ test("layers of other files and with copies have their places, switches and gain
     engine.control = (line) => control(line).then(() => lines.push(line));
   });
   await gain.fill("0.25");
-  await page.waitForFunction(() => lines.length > 0);
-  assert.deepEqual(await page.evaluate(() => lines), ["layer 1 gain 0.25"], "for all copies");
+  await page.waitForFunction(() => lines.length === 3);
+  assert.deepEqual(await page.evaluate(() => lines.sort()), [1, 2, 3].map((copy) => `layer 1.${copy} gain 0.25`));
   await page.click("#panel-layers >> text=wood");
   const line = await page.evaluate(() => {
     const { editor } = studioPage;

@@ -121,7 +121,7 @@ fn the_used_files_are_those_that_the_compiler_reads() {
 }
 
 #[test]
-fn a_text_is_what_its_reader_knows() {
+fn a_text_is_what_its_fields_say() {
     let kind = |text: &str| used_files(&request(text, &[])).unwrap()["kind"].clone();
     for request in gallery::requests(Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap() {
         assert_eq!(used_files(&request).unwrap()["kind"], "scene", "{}", request.entry);
@@ -135,7 +135,9 @@ fn a_text_is_what_its_reader_knows() {
         ("version = 1\n[screen]\nwidth_mm = 150\nheight_mm = 60\n[drive]\na = 1\nb = 2\nc = 3\n", "scene"),
         ("version = 1\ninclude = [\"a.toml\", \"b.toml\", \"c.toml\", \"d.toml\"]\n", "scene"),
         ("# nothing yet\n", "scene"),
-        ("width_mm = \n", "scene"),
+        ("width_mm = \n", "screen"),
+        ("friction_coefficient = 0.4\nnormal_load_n = 0,5\n", "finger"),
+        ("[defaults.region]\nwidth_mm = 4\n", "scene"),
     ] {
         assert_eq!(kind(text), expected, "{text}");
     }

@@ -180,7 +180,7 @@ fn told(layer: &LayerVerdict) -> Vec<String> {
     let from = |border: &BorderStep| format!(" from {}", border.from.as_ref().map_or_else(bare, ToString::to_string));
     let mut steps: Vec<(Step, String)> =
         border.iter().map(|border| (border.step, from(border))).chain([(*contrast, place.to_owned())]).collect();
-    steps.sort_by(|(one, _), (other, _)| other.weber_steps.abs().total_cmp(&one.weber_steps.abs()));
+    steps.sort_by(|(one, _), (other, _)| other.cmp_felt(one));
     // Bursts make a perception less certain than during the burst.
     let surest = layer.click.iter().map(|click| click.verdict).chain(texture.iter().map(|texture| texture.verdict));
     let surest = surest.chain(steps.iter().map(|(step, _)| step.verdict)).fold(Verdict::NotFelt, Verdict::max);

@@ -67,7 +67,7 @@ impl Step {
     }
 
     /// Orders steps by certainty of perception, and then by size.
-    pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
+    pub(crate) fn cmp_felt(&self, other: &Self) -> Ordering {
         self.verdict.cmp(&other.verdict).then(self.weber_steps.abs().total_cmp(&other.weber_steps.abs()))
     }
 }

@@ -17,6 +17,9 @@ pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit:
 pub(super) const STROKE: Column = Column::new("stroke", "");
 pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MILLIMETRES_PER_SECOND);
 
+/// The columns that a recording needs.
+pub(crate) const COLUMNS: [Column; 3] = [VOLTAGE, LOAD, FRICTION];
+
 /// A row of a recording. Unknown values are `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {

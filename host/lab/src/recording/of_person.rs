@@ -1,42 +1,52 @@
 //! Recordings of people, which take a person's time and cannot be computed again.
 
-use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use super::claims::FOOTER_MAX_BYTES;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
+use crate::table::{Column, Table, TableError};
+use crate::{fit, stroke_file};
 
 /// Number of bytes at the beginning of a file that identify it.
-const HEAD: u64 = 4096;
-/// The columns of a recorded stroke, the one that a person's play adds to it, and those of a recording of friction.
-const STROKE_COLUMNS: [&str; 3] = ["t_s", "x_mm", "y_mm"];
+const HEAD: u64 = 64 << 10;
+/// The column that a person's play adds to those of a stroke.
 const PARTICIPANT: &str = "participant";
-const FRICTION_COLUMNS: [&str; 3] = ["voltage_v_rms", "normal_force_n", "friction_n"];
-/// The line of a profile that rests on what a person felt, and a part of the summary of a person's play.
-const PERCEPTUAL: &str = "origin = \"perceptual\"";
+/// The line, without blanks, of a profile that rests on what a person felt, and a part of the summary of a person's play.
+const PERCEPTUAL: &str = "origin=\"perceptual\"";
 const OF_A_PERSON: &str = "\"simulated\":false";
 
-/// Whether a file is a recording of a person, by its content: a stroke of `frixel board record`, friction as `frixel
-/// finger fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file
-/// of a play.
+/// Whether a file is a recording of a person, by its content: a stroke as `--stroke` reads it, friction as `frixel finger
+/// fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file of a
+/// play.
 pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     let mut head = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut head)?;
     if head.starts_with(MAGIC) {
         return Ok(is_footer_of_person(&footer(&mut file)?));
     }
+    // A file that cannot be read as a table has no such columns.
+    if is_table_of_person(&head).unwrap_or(false) {
+        return Ok(true);
+    }
     let text = String::from_utf8_lossy(&head);
-    // Spreadsheets begin a file with a byte order mark.
-    let text = text.trim_start_matches('\u{feff}');
-    let columns: BTreeSet<&str> =
-        text.lines().next().unwrap_or_default().split([',', ';']).map(|cell| cell.trim_matches(['"', ' '])).collect();
-    let has = |names: [&str; 3]| names.iter().all(|name| columns.contains(name));
-    let is_stroke = || columns.iter().all(|name| STROKE_COLUMNS.contains(name) || *name == "force_n");
-    let is_stroke_of_person = has(STROKE_COLUMNS) && (is_stroke() || columns.contains(PARTICIPANT));
-    Ok(is_stroke_of_person
-        || has(FRICTION_COLUMNS)
-        || text.lines().any(|line| line.trim() == PERCEPTUAL)
-        || (text.starts_with('{') && text.contains(OF_A_PERSON)))
+    let is_perceptual = |line: &str| line.split_whitespace().collect::<String>() == PERCEPTUAL;
+    Ok(text.lines().any(is_perceptual) || (text.starts_with('{') && text.contains(OF_A_PERSON)))
+}
+
+/// Whether the columns are those of friction, or those of a stroke without others than a person's play adds.
+fn is_table_of_person(head: &[u8]) -> Result<bool, TableError> {
+    let mut table = Table::new(head)?;
+    if has_all(&mut table, fit::COLUMNS)? {
+        return Ok(true);
+    }
+    let is_of_play = table.names().iter().any(|name| name == PARTICIPANT);
+    let is_stroke = has_all(&mut table, stroke_file::COLUMNS)?;
+    table.find(stroke_file::LOAD)?;
+    Ok(is_stroke && (is_of_play || table.ignored().is_empty()))
+}
+
+fn has_all(table: &mut Table<&[u8]>, columns: [Column; 3]) -> Result<bool, TableError> {
+    columns.into_iter().try_fold(true, |has, column| Ok(table.find(column)?.is_some() && has))
 }
 
 /// The footer of a Parquet file, its length and last bytes included.

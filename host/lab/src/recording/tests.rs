@@ -185,9 +185,11 @@ fn a_recording_of_a_person_is_known_by_its_content() {
         ("t_s,x_mm,y_mm\n0,1,2\n", "a stroke"),
         ("\u{feff}\"t_s\";\"x_mm\";\"y_mm\"\r\n0,0;1,0;2,0\r\n", "as a spreadsheet saves it"),
         ("time_s,stroke,voltage_v_rms,normal_force_n,friction_n\n", "friction"),
+        ("Sensor 7\nvoltage_v_rms\tnormal_force_n\tFriction [mN]\n0\t0.5\t250\n", "as an instrument writes it"),
+        ("t_s,x_cm,y_cm\n0,1,2\n", "a stroke in centimetres"),
         ("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags,participant\n", "a play of a person"),
         ("{\"rig\":\"board\",\"simulated\":false}\n", "its summary"),
-        ("[finger]\norigin = \"perceptual\"\n", "what a person felt"),
+        ("[finger]\norigin=\"perceptual\"\n", "what a person felt"),
     ] {
         assert!(is_known(text.as_bytes()), "{what}");
     }

@@ -68,3 +68,11 @@ fn drafts_keep_to_the_limits_of_the_drive() {
     assert!(refusal(&wide).contains("a skin gap is missing"), "{}", refusal(&wide));
     assert!(wide.reach.voltage_max_v_rms < 100.0, "{:?}", wide.reach);
 }
+
+#[test]
+fn what_cannot_be_read_is_no_draft() {
+    let text = format!("{HEAD}[[layer]]\nkind = \"constant\"\nfrction_n = 0.26\n");
+    let scene = Scene::parse(&text, "test.toml", &*PICTURES).expect("its head reads");
+    let refused = compile_draft(&scene, &LIMITS, TICK_HZ).expect_err("a layer has a misspelt field");
+    assert_eq!(refused, compile(&scene, &LIMITS, TICK_HZ).expect_err("a board refuses it, too"));
+}

@@ -230,6 +230,17 @@ fn a_ramp_stays_a_ramp() {
 }
 
 #[test]
+fn shrinking_keeps_the_mean() {
+    let picture = Picture::decode(&PICTURES["textures/brick.png"], PIXELS_MAX).expect("the picture");
+    let axis = resample::Axis::covering(100.0, 0.4, picture.width);
+    assert_eq!(axis.samples, 250);
+    let samples = resample::resample(&picture.grey, picture.width, axis, axis);
+    let mean = samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len() as f64;
+    let expected = picture.grey.iter().map(|value| f64::from(*value)).sum::<f64>() / picture.grey.len() as f64;
+    assert!((mean - expected).abs() < 0.05, "{mean} is not {expected}");
+}
+
+#[test]
 fn pitches_that_do_not_divide_the_picture_reach_past_its_end() {
     let axis = |length_mm, pitch_mm| resample::Axis::covering(length_mm, pitch_mm, 512).samples;
     assert_eq!((axis(100.0, 0.4), axis(100.0, 0.3), axis(99.9, 0.3), axis(0.1, 10.0)), (250, 334, 333, 1));

@@ -28,7 +28,7 @@ export type Problem = {
   help?: string | null;
 };
 
-/** What is felt of a layer: its verdict in words, its largest step of friction, and its surest vibration. */
+/** What is felt of a layer: its verdict in words, the step that is felt most surely, and its surest vibration. */
 export type Perceived = {
   verdict: string;
   fromN: number;
@@ -61,8 +61,8 @@ export type Layer = {
   gainMax: number;
   /** The gains with which the drive can give all that the layer asks for; null where it is not live, or with none. */
   gainReach: [number, number] | null;
-  /** How many layers of the scene it is. */
-  copies: number;
+  /** Names of its copies in control lines. */
+  controls: string[];
   file?: string;
   /** First and last line. */
   from: [number, number];

@@ -148,7 +148,7 @@ function newLayer(name, kind, boxMm) {
     gainMin: 0,
     gainMax: 1,
     gainReach: null,
-    copies: 1,
+    controls: [],
     from: [1, 1],
     boxMm,
   };

@@ -3,7 +3,6 @@
 
 import { byId, element, shortName } from "./dom.js";
 import { feltLine, stepWords } from "./felt.js";
-import { UNCHECKED } from "./layer_edits.js";
 import { attempt, notify } from "./notices.js";
 import { SHARED_LINE, TomlText } from "./toml_text.js";
 
@@ -76,7 +75,7 @@ export class Layers {
    * @param {Scale} scale
    */
   #row(layer, scale) {
-    const { kind, file, from, copies } = layer;
+    const { kind, file, from, controls } = layer;
     const name = shortName(layer.name);
     const shown = { className: "link", title: file ?? "" };
     const goTo = () => {
@@ -89,7 +88,7 @@ export class Layers {
       this.#editor.has(file)
         ? element("button", { ...shown, type: "button", onclick: goTo }, name)
         : element("b", shown, name),
-      ` ${kind}${copies > 1 ? ` × ${copies}` : ""}${file ? `, ${file}` : ""}`,
+      ` ${kind}${controls.length > 1 ? ` × ${controls.length}` : ""}${file ? `, ${file}` : ""}`,
     );
     const note = element("p", { className: "fine live-note", hidden: true });
     const row = element("div", { className: "layer" }, title, this.#controls(layer, note), note);
@@ -155,6 +154,7 @@ export class Layers {
     if (at === undefined) throw new Error(SHARED_LINE);
     const live = { path: ["layer", at, "live"], value: true, decimals: 0, after: "kind" };
     this.#editor.change(file, toml.with([live]));
+    this.#editor.onReveal();
   }
 
   /**
@@ -182,29 +182,39 @@ export class Layers {
    * Plays a layer that is off once, with all of its copies.
    * @param {Layer} layer Of the last check, which may be newer than the scene that plays.
    */
-  async playOnce({ index }) {
-    if (this.isSceneLoading || index === UNCHECKED) {
+  async playOnce({ controls }) {
+    if (this.isSceneLoading || controls.length === 0) {
       notify("The scene is on its way to the board: play its layer once it is there.");
       return;
     }
-    await this.#engine.control(`trigger ${index}`);
+    for (const number of controls) await this.#engine.control(`trigger ${number}`);
   }
 
   /**
-   * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done.
+   * Sends only what was changed: the scene's gain stays until the slider is moved. Resolves to whether it was done. If
+   * one copy is refused, those before it get their old setting back.
    * @param {Layer} layer
    * @param {{ on: boolean } | { gain: number }} next
    * @param {string} words
    * @param {Live} state
    */
-  async #change({ index }, next, words, state) {
-    if (this.isSceneLoading) {
-      notify("The scene is on its way to the board: change its layers once it is there.");
-      return false;
+  async #change({ index, controls }, next, words, state) {
+    const before = "on" in next ? (state.on ? "on" : "off") : `gain ${state.gain}`;
+    for (const [copy, number] of controls.entries()) {
+      // Another scene may come between two copies.
+      if (this.isSceneLoading) {
+        notify("The scene is on its way to the board: change its layers once it is there.");
+        return false;
+      }
+      const answer = await attempt(() => this.#engine.control(`layer ${number} ${words}`));
+      if (answer === undefined) {
+        for (const changed of controls.slice(0, copy)) {
+          if (!this.isSceneLoading) await attempt(() => this.#engine.control(`layer ${changed} ${before}`));
+        }
+        return false;
+      }
+      if (answer.notice) notify(answer.notice);
     }
-    const answer = await attempt(() => this.#engine.control(`layer ${index} ${words}`));
-    if (answer === undefined) return false;
-    if (answer.notice) notify(answer.notice);
     Object.assign(state, next);
     this.#live.set(index, state);
     return true;
