@@ -269,7 +269,7 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     }
 
     fn round(&mut self, held: bool) -> Round<'_> {
-        assert!(self.ticks_run, "the tick was not started");
+        assert!(self.ticks_run, "the ticks have not been started");
         for _ in 0..ROUND_TICKS {
             self.session.hand_order_to(&mut self.ticker);
             let monitor_v = (self.monitor_mv as f32 - Self::MONITOR_ZERO_MV as f32) / Self::MONITOR_MV_PER_V;

@@ -69,7 +69,7 @@ pub const OUTPUT_AT_START: usize = 11;
 
 /// Number of the fault that ended the previous run; 0 if none did.
 pub const LAST_FAULT: usize = 18;
-/// That fault's detail.
+/// Detail of the last fault.
 pub const LAST_FAULT_DETAIL: usize = 19;
 
 /// Number of the batch of ticks that the simulator has sent last, from 1.

@@ -300,7 +300,7 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
     let mut without_stroke = recording.clone();
     without_stroke.metadata.play["stroke"]["name"] = "file".into();
     write(folder, "without-stroke.parquet", &without_stroke);
-    assert!(refused(folder, "without-stroke.parquet").contains("it has not the file stroke that it was played with"));
+    assert!(refused(folder, "without-stroke.parquet").contains("it lacks stroke, a file that it was played with"));
 
     // A file that asks for ten hours is played for as long as its rows are, and one more.
     succeed(

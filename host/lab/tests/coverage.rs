@@ -78,7 +78,10 @@ fn friction_before_its_switch_is_called_so() {
         let error = fit(rows, &settings()).unwrap_err();
         assert!(matches!(error, FitError::NotSettled(_)), "{error}");
         let said = error.to_string();
-        assert!(said.contains("before each switch") && said.contains("friction changes before its switch"), "{said}");
+        assert!(
+            said.contains("before each switch") && said.contains("friction changes before the drive switches"),
+            "{said}"
+        );
     }
 }
 

@@ -67,7 +67,7 @@ def test_data_that_give_no_finger_are_refused() -> None:
         fit(data, without=["nowhere"])
     with pytest.raises(FitError, match="the data have no columns"):
         fit({})
-    with pytest.raises(ParameterError, match="columns have one length, found"):
+    with pytest.raises(ParameterError, match="columns must have the same length, found"):
         fit({**data, "friction_n": data["friction_n"][1:]})
     with pytest.raises(ParameterError, match="found 'power'"):
         fit(data, law="power")  # type: ignore[arg-type]

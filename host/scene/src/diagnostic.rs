@@ -23,8 +23,8 @@ pub struct Diagnostic {
     pub column: usize,
     /// The text at that position; empty at the end of the file.
     pub text: String,
-    /// The number of the layer's table in the scene, from one at the bottom; `None` if it concerns no layer, or
-    /// several.
+    /// The number of the layer's table in the scene, counted from 1, the bottom layer; `None` if the diagnostic is
+    /// about no single layer.
     pub layer: Option<usize>,
     /// The sentence.
     pub(crate) message: Message,

@@ -99,7 +99,7 @@ impl LayerVerdict {
         }
     }
 
-    /// The step that stands for the layer: the more certainly felt one of its contrast and its border.
+    /// The step that stands for the layer: its contrast or its border, whichever is felt with more certainty.
     pub fn main_step(&self) -> Step {
         let border = self.border.as_ref().map(|border| border.step);
         border.into_iter().chain([self.contrast]).max_by(Step::cmp_felt).unwrap_or(self.contrast)

@@ -121,11 +121,11 @@ pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
     )))
 }
 
-const FORESIGHT: &str = "friction changes before its switch, as behind a centred mean, filtfilt or a Savitzky-Golay \
-                         filter; fit what the sensor gave, and give its times in a column time_s";
+const FORESIGHT: &str = "friction changes before the drive switches, as it does after a centred mean, filtfilt or a \
+                         Savitzky-Golay filter; use the sensor's own samples, with their times in a column time_s";
 const SLOWNESS: &str = "the force sensor or a filter behind it is slower than 200 Hz, or friction was smoothed so that \
-                        it changes before its switch; fit what a faster sensor gave, and give its times in a column \
-                        time_s";
+                        it changes before the drive switches; record with a faster sensor, and with its times in a \
+                        column time_s";
 
 /// A change of electric friction.
 struct Shift {

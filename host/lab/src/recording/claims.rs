@@ -170,7 +170,7 @@ impl Total {
             Some(DATA_PAGE) => Ok(values),
             Some(DICTIONARY_PAGE) if values <= unpacked / DICTIONARY_VALUE_BYTES => Ok(0),
             Some(DICTIONARY_PAGE) => Err(damaged("a dictionary has more values than bytes")),
-            _ => Err(damaged("a page is of a kind that no recording has")),
+            _ => Err(damaged("a page has a type that recordings do not use")),
         }
     }
 }
@@ -255,7 +255,7 @@ mod tests {
             (page(2, 40, 0, HUGE), "a dictionary has more values than bytes"),
             (page(0, 9, 1, 10), "a page ends outside of its column"),
             (page(0, -9, 0, 10), "a count is negative"),
-            (page(3, 9, 0, 10), "a page is of a kind that no recording has"),
+            (page(3, 9, 0, 10), "a page has a type that recordings do not use"),
             (page(0, 9, 0, 10)[..5].to_vec(), "its metadata ends early"),
             (page(0, 16 << 20, 0, 0).repeat(65), "bytes in its pages"),
             (page(0, 0, 0, 0).repeat(1 << 21), "pages, and at most 1048576 are read"),

@@ -197,7 +197,7 @@ fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, Re
 fn missing(name: &str) -> ReplayError {
     let name = brief(name);
     refused(format!(
-        "it has not the file {name} that it was played with, or a damaged one: take the recording from a copy"
+        "it lacks {name}, a file that it was played with, or has a damaged one: use a copy of the recording"
     ))
 }
 

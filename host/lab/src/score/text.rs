@@ -17,9 +17,9 @@ const LEVEL_LINES_MAX: usize = 4;
 const NAME_WIDTH: usize = 30;
 
 impl Score {
-    /// The score in words: the [verdict](Self::verdict), then a line for each layer with its copies and for each two
-    /// levels. If there are many, only the least noticeable ones have a line. With
-    /// `with_fidelity`, every number of [`Self::metrics`] follows, with the goals of a display.
+    /// The score in words: the [verdict](Self::verdict), then a line for each layer with its copies and for each pair
+    /// of neighbouring levels. If there are many, only the least noticeable ones have a line. With `with_fidelity`,
+    /// every number of [`Self::metrics`] follows, with the goals that are set for a display.
     pub fn summary(&self, with_fidelity: bool) -> String {
         let mut text = format!("  {}\n", self.verdict);
         let mut line = |name: &str, value: &str| {

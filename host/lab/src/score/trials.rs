@@ -87,7 +87,7 @@ impl TrialPlan {
     pub const SEEDS: u64 = 2;
     /// Duration of a generated stroke unless another is given, s.
     pub const SECONDS: f64 = 3.0;
-    /// Durations of a generated stroke in a sweep, s: a shorter one has no fidelity.
+    /// Allowed durations of a generated stroke in a sweep, s. A shorter stroke has no fidelity.
     pub const SWEEP_SECONDS: RangeInclusive<f64> = 0.25..=HUMAN_STROKE_MAX_S;
     /// Largest number of people, strokes and repetitions of a score.
     pub const COUNT_MAX: u64 = 1000;

@@ -329,7 +329,7 @@ pub struct Source {
     pub name: String,
     /// Text of the scene.
     pub text: String,
-    /// The bytes of the files that the scene names, by these names.
+    /// Contents of the files that the scene names, by name.
     pub files: BTreeMap<String, Vec<u8>>,
 }
 

@@ -36,7 +36,7 @@ impl CellResult {
         format!("{HEAD}{hash}{BEHIND}{}", content.get(1..).unwrap_or_default())
     }
 
-    /// Reads the text of a result's file, that of the cell with this key if one is given.
+    /// Parses the text of a result file. With a `key`, fails unless the result is that of the cell with this key.
     pub fn from_json(text: &str, key: Option<&str>) -> Result<Self, CellResultError> {
         let hashed = || {
             let (hash, rest) = text.strip_prefix(HEAD)?.split_at_checked(DIGITS)?;

@@ -47,7 +47,7 @@ pub struct Group {
 /// The results of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The groups, in the order of the first of their cells.
+    /// The groups, ordered by the first cell of each.
     pub groups: Vec<Group>,
 }
 

@@ -138,7 +138,7 @@ def _csv(data: Mapping[str, ArrayLike]) -> str:
             raise refusal(f"data[{name!r}]", "numbers (seconds for a time)", values.dtype)
     shapes = {values.shape for values in columns.values()}
     if len(shapes) > 1 or any(len(shape) != 1 for shape in shapes):
-        raise ParameterError(f"data: columns have one length, found shapes {sorted(shapes)}")
+        raise ParameterError(f"data: columns must have the same length, found shapes {sorted(shapes)}")
     if not columns:
         raise FitError("the data have no columns: give voltage_v_rms, normal_force_n and friction_n")
     text = io.StringIO()

@@ -178,7 +178,7 @@ export class Autosave {
     const isFull = error instanceof Error && error.name === "QuotaExceededError";
     const why = isFull ? "its store is full" : "it keeps nothing for this page";
     if (this.isEdited && this.#problem !== why) {
-      const cure = "Save it before you close the page; Open deletes pieces of work that you no longer need.";
+      const cure = "Save it before you close the page; in Open you can delete pieces of work that you no longer need.";
       const said = `The browser does not keep ${this.#current().name}: ${why}. ${cure}`;
       notify(said, undefined, { beside: byId("save") });
       this.#problem = why;

@@ -133,7 +133,7 @@ def observer_of(seed: int) -> Observer:
 
 
 def method_of(name: str, trials: int) -> Method:
-    """The method of this name."""
+    """The method `quest` or `up-down`, set up for this many trials."""
     if name == "quest":
         return QuestPlus(detection.LEVELS, TWO_ALTERNATIVES, trials=trials, grid=detection.GRID)
     return UpDown(0.3, trials=trials, step=1.4, largest=1.0)
