@@ -23,7 +23,7 @@ fn board_v_peak(limits: &BoardLimits, carrier: &Carrier) -> (f64, &'static str) 
     // Rounded down, so that the board's own arithmetic finds no excess.
     let touch_v_peak = (10.0 * f64::from(touch_bound.voltage_max_v_peak(carrier.carrier_hz()))).floor() / 10.0;
     if touch_v_peak < whole_v_peak {
-        (touch_v_peak, " at this carrier, so that at most 0.7 mA pass a bridged or thin coating")
+        (touch_v_peak, " at this carrier (at most 0.7 mA through a bridged or thin coating)")
     } else {
         (whole_v_peak, "")
     }

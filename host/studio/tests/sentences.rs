@@ -78,20 +78,20 @@ fn layers_have_their_files_lines_and_numbers() {
     assert_eq!(answer["ok"], true, "{answer}");
     let layers = answer["layers"].as_array().unwrap();
     let part = |layer: usize, names: [&str; 7]| names.map(|name| layers[layer][name].clone());
-    let names = ["index", "name", "file", "from", "copies", "gain", "boxMm"];
+    let names = ["index", "name", "file", "from", "controls", "gain", "boxMm"];
     let key = [
         json!(1),
         json!("key"),
         json!("parts/keys.toml"),
         json!([3, 15]),
-        json!(3),
+        json!(["1.1", "1.2", "1.3"]),
         json!(0.5),
         json!([5.0, 6.0, 27.0, 8.0]),
     ];
     assert_eq!(part(0, names), key);
     assert_eq!(
         part(1, names),
-        [json!(2), json!("constant"), json!(null), json!([4, 6]), json!(1), json!(1.0), json!(null)]
+        [json!(2), json!("constant"), json!(null), json!([4, 6]), json!(["2"]), json!(1.0), json!(null)]
     );
     assert_eq!((&layers[0]["isLive"], &layers[1]["isLive"]), (&json!(true), &json!(false)));
     assert_eq!((&layers[0]["gainMin"], &layers[0]["gainMax"]), (&json!(-100.0), &json!(100.0)));

@@ -74,13 +74,14 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
         let path = printable(&path.display().to_string()).into_owned();
         format!("{path} is outside of the scene's folder: give it along with the scene")
     }));
-    let check = if args.image { check.with_board(&program, rig.board.kind) } else { check };
+    let mut check = if args.image { check.with_board(&program, rig.board.kind) } else { check };
+    let board_lines = board.map(|board| board_line(&board, &program, verdict(&board, &program))).unwrap_or_default();
     if args.json {
+        let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+        check.notes.extend(board_lines.lines().map(words));
         return print_line(check.to_json());
     }
-    if board.is_some() {
-        print(board_line(&rig.board, &program, verdict(&rig.board, &program)))?;
-    }
+    print(board_lines)?;
     print(check.summary(args.cost))
 }
 
