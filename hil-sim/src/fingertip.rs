@@ -113,8 +113,8 @@ impl Fingertip {
         self.scene_load_n = law.normal_load_n();
     }
 
-    /// Slides to `finger` in a tick, over an electrode with the voltage of `output`. `measured_load_n`, if any, replaces
-    /// the varying load.
+    /// Slides to `finger` in a tick, over an electrode with the voltage of `output`. `measured_load_n`, if any,
+    /// replaces the varying load.
     ///
     /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters.
     pub(crate) fn slide(&mut self, output: &Output, finger: &FingerState, measured_load_n: Option<f64>) -> Felt {

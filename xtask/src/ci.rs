@@ -59,8 +59,9 @@ const STEPS: [Step; 14] = [
 ];
 
 /// The crates of the page whose code differs for WebAssembly, in the profile of the page, whose build shares what the
-/// compiler itself takes. The `clippy.toml` of these, and of those that they depend on, disallows clocks, files, threads
-/// and processes on every platform. That scenes have the same bits there is checked in the page (`studio_tests.rs`).
+/// compiler itself takes. The `clippy.toml` of these, and of those that they depend on, disallows clocks, files,
+/// threads and processes on every platform. That scenes have the same bits there is checked in the page
+/// (`studio_tests.rs`).
 const PAGE_CRATES: [&str; 1] = ["cargo clippy --locked --target wasm32-unknown-unknown --profile studio --lib -p \
                                  frixel-hil-sim -p frixel-lab -p frixel-studio -- -D warnings"];
 /// The whole command for Windows and macOS. Functions that need a pseudo-terminal fail there at run time.
@@ -69,8 +70,8 @@ const OTHER_SYSTEMS: [&str; 2] = [
     "cargo check --locked -p frixel --target aarch64-apple-darwin",
 ];
 
-/// Runs every step, and prints the time of each. A step whose programs are missing is skipped; in continuous integration
-/// that is an error before the first step.
+/// Runs every step, and prints the time of each. A step whose programs are missing is skipped; in continuous
+/// integration that is an error before the first step.
 pub(crate) fn run_all() -> Result<(), String> {
     let is_ci = env::var_os("CI").is_some_and(|ci| !ci.is_empty() && ci != "false" && ci != "0");
     let mut steps = Vec::new();

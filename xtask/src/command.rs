@@ -128,8 +128,8 @@ pub(crate) fn run(name: &str, command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// Runs command lines of cargo in the root of the repository, one after the other. A test that lacks its rig fails, as in
-/// continuous integration.
+/// Runs command lines of cargo in the root of the repository, one after the other. A test that lacks its rig fails, as
+/// in continuous integration.
 pub(crate) fn run_lines(lines: &[&str]) -> Result<(), String> {
     lines.iter().try_for_each(|line| run(line, cargo_in(".").args(line.split(' ').skip(1)).env("CI", "true")))
 }

@@ -1,5 +1,6 @@
-//! Every file of tests belongs to a test program. The files of `tests` are modules of few programs, which cargo does not
-//! look for by itself, so a file that no program names would never run. And every file that a document names exists.
+//! Every file of tests belongs to a test program. The files of `tests` are modules of few programs, which cargo does
+//! not look for by itself, so a file that no program names would never run. And every file that a document names
+//! exists.
 
 use std::fs;
 use std::path::{Path, PathBuf};

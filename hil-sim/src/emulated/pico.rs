@@ -59,8 +59,8 @@ pub struct BrokenInputs {
 ///
 /// Time is virtual and passes only in [`Self::step`], so it waits for a host on a busy machine. The world advances by
 /// one tick with each frame that the board sends at its beat, and at the same rate without frames. The board receives
-/// touch reports from its host, which [takes](Self::take_touch_frames) them from the touch source and sends them between
-/// its own frames. An image with an optical frame receives them from [`Self::attach_frame`].
+/// touch reports from its host, which [takes](Self::take_touch_frames) them from the touch source and sends them
+/// between its own frames. An image with an optical frame receives them from [`Self::attach_frame`].
 #[derive(Debug)]
 pub struct PicoRig {
     process: Process,

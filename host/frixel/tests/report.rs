@@ -150,7 +150,8 @@ fn errors_over_fingers_and_loads_stay_below_the_bounds_and_are_not_zero() {
     }
     // Of a decade of q and two of n, and without a load; each with a soft, a usual and a hard finger.
     assert_eq!(cells.iter().filter(|(_, fingers)| fingers.len() >= 4).count(), 24 * 8);
-    // What a problem itself makes of the rounding of its numbers is not the model's error: the bound of `PulledContact`.
+    // What a problem itself makes of the rounding of its numbers is not the model's error: the bound of
+    // `PulledContact`.
     for row in &pulled {
         let bound = 4e-15 * (number(row, "condition") / 12.0).max(1.0);
         assert!(number(row, "friction_error_f64") <= bound && number(row, "voltage_error_f64") <= 4e-15, "{row:?}");

@@ -341,7 +341,7 @@ def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
 
 def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
     with opened(tmp_path) as session, Device.open("sim") as device:
-        with pytest.raises(ParameterError, match=r"a board, of Device\.open, found 'sim'"):
+        with pytest.raises(ParameterError, match=r"a board from Device\.open, found 'sim'"):
             session.play(plates(0.1), on="sim", seconds=1)  # type: ignore[arg-type]
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device)

@@ -14,8 +14,8 @@ pub(crate) const FEW: u64 = 500;
 /// Number of these scenes whose longest tick a debugger follows.
 const FOLLOWED: usize = 12;
 
-/// How often the touch source of a random scene reports: at the usual rate of touch chips and screens, and at the highest
-/// that a host may send at. The image uses the same names.
+/// How often the touch source of a random scene reports: at the usual rate of touch chips and screens, and at the
+/// highest that a host may send at. The image uses the same names.
 pub(crate) const PACES: [&str; 2] = ["usual", "fast"];
 
 /// The counts of one scene.

@@ -2,8 +2,8 @@
 //! `frixel-session` (`safety`) tests that the board then stops.
 //!
 //! The plant here is a board and its amplifier in steps of 0.2 us: the enable changes 10 us into a tick, the DAC
-//! latches the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", not read). The monitor's ADC takes 2.5
-//! us for a conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its
+//! latches the code at 24 us and slews at 5 V/us (AD5761R datasheet, "Slew rate", not read). The monitor's ADC takes
+//! 2.5 us for a conversion, of which it samples for 2.2 us, and runs by itself: what a tick reads 0.9 us after its
 //! beginning was sampled up to 0.6 us after it, and as early as 1.8 us before.
 
 use frixel_model::{SINGLE_FAULT_CURRENT_MAX_A_PEAK, TOUCH_CURRENT_MAX_A_PEAK, TouchBound};

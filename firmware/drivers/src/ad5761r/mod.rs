@@ -90,8 +90,8 @@ impl<E> From<E> for Error<E> {
 /// or discards a truncated one, and further clocks have no effect. The falling edge of CLEAR comes last, because only
 /// the edge sets the DAC to zero: a frame executed after it would output its code (data sheet, "Pin configuration and
 /// function descriptions", not read). CLEAR is set high before, because it may already be low, as after a reset. The
-/// times required between these edges were not read (data sheet, "Timing characteristics"); setting a pin takes 70 ns or
-/// more at 170 MHz.
+/// times required between these edges were not read (data sheet, "Timing characteristics"); setting a pin takes 70 ns
+/// or more at 170 MHz.
 ///
 /// The pins' former functions must no longer drive them once they are set. A pin that reports an error is skipped; the
 /// others are still set.

@@ -28,7 +28,8 @@ const BOARD_GAP_M: f64 = 10e-6;
 const BOARD_LOAD_N: f64 = 0.5;
 /// Highest voltage in a calibration or an experiment with a person, V rms.
 pub const VOLTAGE_MAX_V_RMS: f64 = 150.0;
-/// Part of the highest voltage's friction that calibrations and experiments ask for, so that rounding stays within reach.
+/// Part of the highest voltage's friction that calibrations and experiments ask for, so that rounding stays within
+/// reach.
 pub const REACH: f64 = 0.999;
 
 /// A calibration: strokes back and forth, each at one voltage that is switched on and off.

@@ -155,7 +155,8 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
     Ok((Division::Blocks, blocks.collect()))
 }
 
-/// Divides a stroke of the column where the finger turns. Fails without times: rows around a turn are no steady sliding.
+/// Divides a stroke of the column where the finger turns. Fails without times: rows around a turn are no steady
+/// sliding.
 fn turned(stroke: Stroke, has_time: bool) -> Result<Vec<Stroke>, FitError> {
     let name = stroke.name;
     let pieces = pieces(stroke.rows).into_iter().map(|rows| Stroke { name: name.clone(), rows });

@@ -13,8 +13,8 @@ use super::{
 /// Voltage of the keys that name it, in volts rms.
 const NAMED_V_RMS: f64 = 150.0;
 
-/// A fit by either law; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are of
-/// 95 %.
+/// A fit by either law; the field names are the keys of `--json`, and an unknown value is `null` there. Intervals are
+/// of 95 %.
 #[derive(Default, Serialize)]
 struct Summary<'f> {
     /// `empirical`; absent for the contact model.

@@ -61,8 +61,8 @@ pub fn data(input: impl Read) -> Result<Reading<Data>, FitError> {
 }
 
 /// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`
-/// and `speed_mm_s` are read if there are such columns, and their empty cells and `nan` are unknown; others are ignored.
-/// Columns stand in any order, and may state another unit ([`table`](crate::table)).
+/// and `speed_mm_s` are read if there are such columns, and their empty cells and `nan` are unknown; others are
+/// ignored. Columns stand in any order, and may state another unit ([`table`](crate::table)).
 pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     recording(Table::new(input)?)
 }

@@ -107,8 +107,8 @@ fn row_group(footer: &mut Thrift<'_>, columns: u64) -> Result<u64, RecordingErro
     Ok(rows)
 }
 
-/// Checks the headers of all pages of a file whose footer is checked: each unpacks to no more than is read, and those of
-/// a column have the rows of its row group.
+/// Checks the headers of all pages of a file whose footer is checked: each unpacks to no more than is read, and those
+/// of a column have the rows of its row group.
 pub(super) fn check_pages(bytes: &[u8], file: &ParquetMetaData) -> Result<(), RecordingError> {
     let mut total = Total::default();
     for group in file.row_groups() {

@@ -11,13 +11,14 @@ use crate::{fit, stroke_file};
 const HEAD: u64 = 64 << 10;
 /// The column that a person's play adds to those of a stroke.
 const PARTICIPANT: &str = "participant";
-/// The line, without blanks, of a profile that rests on what a person felt, and a part of the summary of a person's play.
+/// The line, without blanks, of a profile that rests on what a person felt, and a part of the summary of a person's
+/// play.
 const PERCEPTUAL: &str = "origin=\"perceptual\"";
 const OF_A_PERSON: &str = "\"simulated\":false";
 
-/// Whether a file is a recording of a person, by its content: a stroke as `--stroke` reads it, friction as `frixel finger
-/// fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file of a
-/// play.
+/// Whether a file is a recording of a person, by its content: a stroke as `--stroke` reads it, friction as `frixel
+/// finger fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file
+/// of a play.
 pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     let mut head = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut head)?;

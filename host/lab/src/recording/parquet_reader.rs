@@ -21,8 +21,8 @@ use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values, cl
 pub const MAGIC: &[u8; 4] = b"PAR1";
 /// Bytes of a footer's length and of the last bytes behind it.
 const TAIL_BYTES: usize = 8;
-/// Most ends of a footer, from the last on, that are tried where the end is missing. In one that was cut off the first of
-/// them is whole, unless a value has the same bytes.
+/// Most ends of a footer, from the last on, that are tried where the end is missing. In one that was cut off the first
+/// of them is whole, unless a value has the same bytes.
 const FOOTERS_MAX: u32 = 16;
 /// Most bytes of all texts: the flags of a play take some 10 a row.
 const TEXTS_MAX_BYTES: u64 = 256 << 20;

@@ -266,8 +266,8 @@ fn a_damaged_file_is_refused() {
     }
 }
 
-/// A file that is cut off has a whole footer among its last ends, and one with thousands is no such file. A file that ends
-/// with a footer is not cut off, so that no other one stands in for it.
+/// A file that is cut off has a whole footer among its last ends, and one with thousands is no such file. A file that
+/// ends with a footer is not cut off, so that no other one stands in for it.
 #[test]
 fn few_ends_of_a_file_are_tried() {
     let own = bytes(&recording(20));

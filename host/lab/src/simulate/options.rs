@@ -142,8 +142,8 @@ impl StrokeOptions {
     }
 
     /// The stroke that the options describe; `None` without options, and for that of a file. A generated stroke covers
-    /// a screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its own.
-    /// In a play longer than
+    /// a screen of this width and height, in m, for the `seconds` and with the `seed` of the play, unless it has its
+    /// own. In a play longer than
     /// [`HUMAN_STROKE_MAX_S`], a person's stroke repeats.
     pub fn generated(
         &self,

@@ -25,7 +25,8 @@ const PATH_PARTS_MAX: usize = 64;
 /// use frixel_lab::sweep::Plan;
 ///
 /// let plan = Plan::parse(
-///     "scenes = [\"bars.toml\"]\npeople = 40\n[parameters]\n\"layer.1.high_n\" = { from = 0.01, to = 0.03, count = 3 }\n",
+///     "scenes = [\"bars.toml\"]\npeople = 40\n[parameters]\n\"layer.1.high_n\" = { from = 0.01, to = 0.03, count = 3
+/// }\n",
 ///     "plan.toml",
 /// )?;
 /// assert_eq!((plan.people, plan.parameters["layer.1.high_n"].values().len()), (40, 3));
