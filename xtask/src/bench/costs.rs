@@ -145,8 +145,7 @@ fn line_through((few, many): (u64, u64), at_few: u64, at_many: u64) -> (u64, u64
 fn file(m4f: &Costs, m0_plus: &Costs) -> String {
     let mut text = String::from(
         "//! Core cycles on a Cortex-M4F and on a Cortex-M0+ at the worst input, estimated. Written by\n\
-         //! `FRIXEL_BLESS=1 cargo xtask bench`; `cargo xtask ci budgets` measures again and fails when it finds
-         //! others.\n\
+         //! `FRIXEL_BLESS=1 cargo xtask bench`; `cargo xtask ci budgets` measures again and fails when it finds others.\n\
          #![allow(dead_code, reason = \"a kind whose feature is off costs nothing\")]\n\n\
          use crate::cost::Cost;\n",
     );
