@@ -12,8 +12,7 @@
 //! use std::collections::BTreeMap;
 //! use frixel_scene::{Scene, TargetRange, compile};
 //!
-//! let text = "version = 1\nscreen = { width_mm = 120, height_mm = 80, coating = { thickness_um = 10, permittivity = 1
-//! } }\n\
+//! let text = "version = 1\nscreen = { width_mm = 120, height_mm = 80, coating = { thickness_um = 10, permittivity = 1 } }\n\
 //!     finger = { radius_mm = 8, stiffness_pa_per_m = 1.8e7, friction_coefficient = 0.5, normal_load_n = 0.5, \
 //!     skin_gap_um = 0 }\n\
 //!     [[layer]]\nkind = \"constant\"\nfriction_n = 0.26\n";
