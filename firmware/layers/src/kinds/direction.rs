@@ -76,10 +76,6 @@ impl Evaluate for DirectionCoefficients {
 
 #[cfg(test)]
 mod tests {
-    use core::f64::consts::TAU;
-
-    use proptest::prelude::*;
-
     use super::*;
     use crate::context::Inputs;
     use crate::{BitmapPool, Blend, Clicks, Layer, Record, Region, active::ActiveLayers};
@@ -123,29 +119,5 @@ mod tests {
         }
         // Where the squares overflow, the side is still the right one.
         assert!(part(0.0, [2e19, 0.0]) >= 1.0 && part(0.0, [f32::NEG_INFINITY, 0.0]) <= 0.0);
-    }
-
-    proptest! {
-        /// Within 2e-6 of the difference of both, from the formula in `f64`.
-        #[test]
-        fn the_friction_matches_the_formula(
-            angle_turns in -1.0_f32..=1.0,
-            heading_turns in 0.0_f64..1.0,
-            exponent in -6.0_f64..2.0,
-            along_n in -1.0_f32..1.0,
-            against_n in -1.0_f32..1.0,
-        ) {
-            let speed_m_per_s = libm::exp10(exponent);
-            let velocity = [libm::cos(TAU * heading_turns), libm::sin(TAU * heading_turns)]
-                .map(|part| (speed_m_per_s * part) as f32);
-            let [x, y] = velocity.map(f64::from);
-            let (axis_x, axis_y) = (libm::cos(TAU * f64::from(angle_turns)), libm::sin(TAU * f64::from(angle_turns)));
-            let part = (axis_x * x + axis_y * y) / libm::hypot(x, y).max(0.02);
-            let (along, against) = (f64::from(along_n), f64::from(against_n));
-            let expected = against + (along - against) * 0.5 * (1.0 + part);
-            let found = f64::from(at(Direction { angle_turns, along_n, against_n }, velocity));
-            let difference = (along - against).abs();
-            prop_assert!((found - expected).abs() <= 2e-6 * difference + 1e-7, "{} is not {}", found, expected);
-        }
     }
 }

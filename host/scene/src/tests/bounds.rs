@@ -58,7 +58,7 @@ fn extremes_hold_all_over_a_cell() {
 }
 
 /// Random stacks of layers of all kinds.
-fn stacks() -> impl Iterator<Item = Program> {
+pub(super) fn stacks() -> impl Iterator<Item = Program> {
     let empty = compile_layers("");
     let picture = Bitmap::new(3, 2, vec![0, 255, 100, 30, 0, 255]);
     (0..200).map(move |seed| {
@@ -69,7 +69,7 @@ fn stacks() -> impl Iterator<Item = Program> {
 }
 
 /// The same stack without buttons, and with all regions the whole screen.
-fn everywhere(program: &Program) -> Program {
+pub(super) fn everywhere(program: &Program) -> Program {
     let layers = program.records.iter().filter(|record| !matches!(record.layer, Layer::Button(_)));
     Program { records: layers.map(|record| Record { region: Region::Screen, ..*record }).collect(), ..program.clone() }
 }

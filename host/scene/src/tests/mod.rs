@@ -8,6 +8,7 @@ use frixel_wire::hello::BoardLimits;
 
 use super::{CompileError, Diagnostic, Program, Scene, compile, compile_draft};
 
+mod agreement;
 mod bounds;
 mod corpus;
 mod cures;
