@@ -11,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {
     let target = env::var("TARGET").expect("the environment names a target");
-    TARGETS.iter().find(|(name, _)| *name == target).expect("a known target").1
+    TARGETS.into_iter().find(|known| known.name == target).expect("a known target")
 });
 
 fuzz_target!(
@@ -24,5 +24,5 @@ fuzz_target!(
             process::abort();
         }
     })),
-    |bytes: &[u8]| TARGET(bytes)
+    |bytes: &[u8]| (TARGET.run)(bytes)
 );

@@ -24,33 +24,77 @@ use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
 
-/// A function that takes arbitrary bytes.
-pub type Target = fn(&[u8]);
+/// A function that takes arbitrary bytes, and the inputs that it starts from.
+pub struct Target {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// Number of inputs in `cargo xtask ci fuzz`.
+    pub inputs: u32,
+    /// Generates the seed corpus: file names and contents.
+    pub seeds: fn() -> Vec<(String, Vec<u8>)>,
+    /// Tests one input.
+    pub run: fn(&[u8]),
+}
 
-/// All targets by name. Those that read text get the valid part in front of the bytes.
-pub const TARGETS: [(&str, Target); 6] = [
-    ("scene_text", |bytes| scene_text(text(bytes))),
-    ("scene_bytes", scene_bytes),
-    ("scene_load", |bytes| _ = scene_load(bytes)),
-    ("parquet", parquet),
-    ("scenario", |bytes| scenario(text(bytes))),
-    ("plan", |bytes| plan(text(bytes))),
+/// All targets. A target that reads text gets the bytes up to the first that is not UTF-8.
+pub const TARGETS: [Target; 6] = [
+    Target {
+        name: "scene_text",
+        inputs: 30_000,
+        seeds: || contents(scene_files()),
+        run: |bytes| scene_text(text(bytes)),
+    },
+    Target { name: "scene_bytes", inputs: 2_000_000, seeds: compiled_scenes, run: scene_bytes },
+    Target { name: "scene_load", inputs: 30_000, seeds: compiled_scenes, run: |bytes| _ = scene_load(bytes) },
+    Target {
+        name: "parquet",
+        inputs: 100_000,
+        seeds: || vec![("recording".to_owned(), recording_file())],
+        run: parquet,
+    },
+    Target {
+        name: "scenario",
+        inputs: 100_000,
+        seeds: || contents(toml_files("../hil-sim/scenarios")),
+        run: |bytes| scenario(text(bytes)),
+    },
+    Target {
+        name: "plan",
+        inputs: 150_000,
+        seeds: || vec![("plan".to_owned(), PLAN.as_bytes().to_vec())],
+        run: |bytes| plan(text(bytes)),
+    },
 ];
 
 fn text(bytes: &[u8]) -> &str {
     bytes.utf8_chunks().next().map_or("", |chunk| chunk.valid())
 }
 
-/// Scene files of the seed corpus: those of the gallery, and one whose finger has an empirical law.
-pub fn scene_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let gallery =
-        fs::read_dir(folder.join("../scenes")).expect("the gallery").map(|entry| entry.expect("a file").path());
-    let mut files: Vec<PathBuf> = gallery.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+/// The TOML files in a folder, relative to this crate's.
+fn toml_files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path());
+    let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
     assert!(!files.is_empty());
     files.sort();
-    files.push(folder.join("empirical.toml"));
     files
+}
+
+/// The scenes of the gallery, and one whose finger has an empirical law.
+fn scene_files() -> Vec<PathBuf> {
+    let mut files = toml_files("../scenes");
+    files.push(Path::new(env!("CARGO_MANIFEST_DIR")).join("empirical.toml"));
+    files
+}
+
+/// File names without extension, and contents.
+fn contents(files: Vec<PathBuf>) -> Vec<(String, Vec<u8>)> {
+    let named = files.into_iter().map(|file| (stem(&file), fs::read(file).expect("a file")));
+    named.collect()
+}
+
+fn stem(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// The files that a scene of the gallery names.
@@ -72,13 +116,12 @@ pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
         (file, compile(&scene, &board.limits, board.tick_hz).expect("a valid scene"))
     });
     let programs = programs.filter(|(_, program)| program.bitmaps.is_empty());
-    let name = |file: PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    programs.map(|(file, program)| (name(file), program.scene_bytes())).collect()
+    programs.map(|(file, program)| (stem(&file), program.scene_bytes())).collect()
 }
 
 /// Compiles arbitrary text as a scene file. It is rejected, or becomes a program that a board accepts, with ticks in
 /// time.
-pub fn scene_text(text: &str) {
+fn scene_text(text: &str) {
     let rig = RigConfig::default();
     // There are no pictures, because only the text is tested.
     let Ok(scene) = Scene::parse(text, "fuzz.toml", &BTreeMap::new()) else { return };
@@ -92,13 +135,13 @@ pub fn scene_text(text: &str) {
 }
 
 /// A plan for the seed corpus.
-pub const PLAN: &str = "scenes = [\"flat.toml\"]\npeople = 2\ntouch = [\"100\", \"500\"]\n[parameters]\n\
+const PLAN: &str = "scenes = [\"flat.toml\"]\npeople = 2\ntouch = [\"100\", \"500\"]\n[parameters]\n\
     \"layer.1.friction_fraction\" = { from = 0.1, to = 0.3, count = 3 }\n\"drive.voltage_max_v_rms\" = [100, 150]\n";
 /// Largest number of people and of parameters for which the cells of a plan are generated.
 const COMBINED_MAX: usize = 3;
 
 /// The bytes of a recording's file, for the seed corpus.
-pub fn recording_file() -> Vec<u8> {
+fn recording_file() -> Vec<u8> {
     let row = |number: u32| FeltRow {
         t_s: f64::from(number),
         x_mm: (!number.is_multiple_of(3)).then_some(2.5),
@@ -112,7 +155,7 @@ pub fn recording_file() -> Vec<u8> {
 
 /// Reads arbitrary bytes as a recording's file, with a matching hash, so that the damage itself is parsed. They are
 /// rejected, or the result can be written and read again.
-pub fn parquet(bytes: &[u8]) {
+fn parquet(bytes: &[u8]) {
     let Ok(recording) = Recording::read_parquet(sealed(bytes.to_vec())) else { return };
     let mut written = Vec::new();
     recording.write_parquet(&mut written).expect("what was read can be written");
@@ -135,14 +178,14 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// Reads arbitrary text as a scenario. It is rejected, or has a scene and at most 1,000 commands and faults.
-pub fn scenario(text: &str) {
+fn scenario(text: &str) {
     let Ok(scenario) = Scenario::parse(text, "fuzz.toml") else { return };
     assert!(scenario.commands.len() + scenario.faults.len() <= 1_000);
     assert!(scenario.scenes().count() >= 1);
 }
 
 /// Reads arbitrary text as the plan of a sweep, and generates the cells of a plan with few combinations.
-pub fn plan(text: &str) {
+fn plan(text: &str) {
     let Ok(plan) = Plan::parse(text, "fuzz.toml") else { return };
     let lists = plan.parameters.len().max(plan.scenes.len()).max(plan.screens.len()).max(plan.touch.len());
     let values = plan.parameters.values().map(|values| values.values().len()).max().unwrap_or(0);
@@ -159,7 +202,7 @@ pub fn plan(text: &str) {
 }
 
 /// Parses arbitrary bytes as a compiled scene. They are rejected, or every record can be read and written back.
-pub fn scene_bytes(bytes: &[u8]) {
+fn scene_bytes(bytes: &[u8]) {
     let Ok(scene) = WireScene::parse(bytes) else { return };
     let records: Vec<_> = scene.records().collect();
     let points: Vec<_> = scene.points().collect();

@@ -1,16 +1,10 @@
 //! The fuzz targets on the scenes of the gallery and on changed copies of them: a sample of what libFuzzer does.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::fs;
-
-use frixel_fuzz::{
-    PLAN, compiled_scenes, parquet, plan, recording_file, scenario, scene_bytes, scene_files, scene_load, scene_text,
-};
+use frixel_fuzz::{TARGETS, compiled_scenes, scene_load};
 use frixel_testkit::Random;
 
-const SCENARIO: &str = "scenario = 1\nscene = \"brick.toml\"\nseconds = 1\n[[command]]\nat_ms = 0\ndo = \"play\"\n\
-    [[fault]]\nname = \"cut\"\nat_ms = 300\ncause = \"cable-cut\"\n[[expect]]\nafter = \"cut\"\noutput = \"off\"\n";
-/// Changed copies of each scene.
+/// Changed copies of each input of a slow target.
 const COPIES: u64 = 200;
 
 /// A copy with one to four bytes changed.
@@ -24,33 +18,18 @@ fn changed(bytes: &[u8], random: &mut Random) -> Vec<u8> {
 }
 
 #[test]
-fn changed_texts_are_refused_or_become_programs_that_a_board_accepts() {
-    for path in scene_files() {
-        let text = fs::read(&path).unwrap();
-        scene_text(&String::from_utf8_lossy(&text));
-        for seed in 0..COPIES {
-            scene_text(&String::from_utf8_lossy(&changed(&text, &mut Random::new(seed))));
-        }
-    }
-}
-
-#[test]
-fn changed_recordings_scenarios_and_plans_are_refused_or_read() {
-    let recording = recording_file();
-    parquet(&recording);
-    for seed in 0..20 * COPIES {
-        parquet(&changed(&recording, &mut Random::new(seed)));
-        plan(&String::from_utf8_lossy(&changed(PLAN.as_bytes(), &mut Random::new(seed))));
-        scenario(&String::from_utf8_lossy(&changed(SCENARIO.as_bytes(), &mut Random::new(seed))));
-    }
-}
-
-#[test]
-fn changed_bytes_are_refused_or_can_be_written_back() {
-    for (_, scene) in compiled_scenes() {
-        scene_bytes(&scene);
-        for seed in 0..20 * COPIES {
-            scene_bytes(&changed(&scene, &mut Random::new(seed)));
+fn changed_seeds_pass_every_target() {
+    for target in TARGETS.into_iter().filter(|target| target.name != "scene_load") {
+        let seeds = (target.seeds)();
+        let copies = match target.name {
+            "scene_text" | "scenario" => COPIES,
+            _ => 20 * COPIES,
+        };
+        for (_, bytes) in seeds {
+            (target.run)(&bytes);
+            for seed in 0..copies {
+                (target.run)(&changed(&bytes, &mut Random::new(seed)));
+            }
         }
     }
 }

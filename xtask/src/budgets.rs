@@ -5,13 +5,14 @@ use std::path::Path;
 use crate::bench::Figures;
 use crate::command::text;
 
-/// Reads the limits.
-pub(crate) fn read(path: &Path) -> Result<Figures, String> {
-    toml::from_str(&text(path)?).map_err(|error| format!("{}: {error}", path.display()))
+/// Fails if a figure exceeds its limit in the file, or a limit has no figure.
+pub(crate) fn check_file(path: &Path, figures: &Figures) -> Result<(), String> {
+    let limits = toml::from_str(&text(path)?).map_err(|error| format!("{}: {error}", path.display()))?;
+    check(&limits, figures)
 }
 
-/// Fails if a figure exceeds its limit or a limit has no figure. The error lists them.
-pub(crate) fn check(limits: &Figures, figures: &Figures) -> Result<(), String> {
+/// The error lists all breaches.
+fn check(limits: &Figures, figures: &Figures) -> Result<(), String> {
     let breaches: Vec<String> = limits
         .iter()
         .filter_map(|(name, limit)| match figures.get(name) {
@@ -26,6 +27,8 @@ pub(crate) fn check(limits: &Figures, figures: &Figures) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::{root, target_folder, write};
+    use crate::numbers;
 
     #[test]
     fn figures_above_their_limit_or_not_measured_are_named() {
@@ -36,5 +39,19 @@ mod tests {
         assert!(message.contains("b is 11") && message.contains("c has a limit"), "{message}");
         assert!(!message.contains("a is"), "{message}");
         assert_eq!(check(&limits, &figures(&[("a", 0), ("b", 10), ("c", 3), ("d", 99)])), Ok(()));
+    }
+
+    #[test]
+    fn an_image_over_a_lowered_budget_is_noticed() {
+        let figures = numbers::committed_figures().unwrap();
+        assert_eq!(check_file(&root().join("budgets.toml"), &figures), Ok(()));
+        let budgets = text(&root().join("budgets.toml")).unwrap();
+        let image = "pico.flash_full";
+        let limit = budgets.lines().find(|line| line.starts_with(&format!("\"{image}\""))).unwrap();
+        let lowered = target_folder().join("bench/lowered-budgets.toml");
+        write(&lowered, budgets.replace(limit, &format!("\"{image}\" = {}", figures[image] - 1))).unwrap();
+        let message = check_file(&lowered, &figures).unwrap_err();
+        assert!(message.contains(&format!("{image} is {}", figures[image])), "{message}");
+        assert_eq!(message.lines().count(), 2, "{message}");
     }
 }

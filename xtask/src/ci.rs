@@ -204,7 +204,7 @@ fn images() -> Result<(), String> {
 fn check_budgets() -> Result<(), String> {
     let figures = bench::bench()?;
     eprint!("{}", bench::table(&figures));
-    budgets::check(&budgets::read(&root().join("budgets.toml"))?, &figures)?;
+    budgets::check_file(&root().join("budgets.toml"), &figures)?;
     numbers::check(&figures)?;
     bench::costs::check(&figures)?;
     programs::PACES.into_iter().try_for_each(|pace| programs::check(pace, 0, programs::FEW))

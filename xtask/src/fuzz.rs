@@ -6,17 +6,8 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use crate::ci;
-use crate::command::{absolute, bytes, remove, root, run, target_folder};
+use crate::command::{absolute, bytes, remove, root, run, target_folder, text_of};
 
-/// The targets, each with its number of inputs in [`Extent::Fixed`].
-const TARGETS: [(&str, u32); 6] = [
-    ("scene_text", 30_000),
-    ("scene_bytes", 2_000_000),
-    ("scene_load", 30_000),
-    ("parquet", 100_000),
-    ("scenario", 100_000),
-    ("plan", 150_000),
-];
 /// Longest time of one input: beyond it, the target hangs.
 const INPUT_MAX: Duration = Duration::from_secs(30);
 /// The compiler of the workspace's crates, whose coverage guides libFuzzer. What they depend on is shared with
@@ -26,10 +17,10 @@ const COMPILER: &str = "fuzz/rustc-with-coverage";
 /// How far a target is run.
 #[derive(Clone, Copy)]
 pub(crate) enum Extent {
-    /// As many inputs as [`TARGETS`] says, drawn from one seed and from what a target starts with. They are nearly the
-    /// same at every run, on fast and slow machines; only targets with hash maps differ a little.
+    /// Each target's number of inputs, from one seed of the generator. Runs hardly differ, on fast and slow machines;
+    /// only targets with hash maps do.
     Fixed,
-    /// Other inputs at every run, for this time. Those that reach new code are where the next such run begins.
+    /// Other inputs at every run, for this time. Inputs that reach new code are kept for the next such run.
     For(Duration),
 }
 
@@ -40,44 +31,43 @@ pub(crate) fn run_all(extent: Extent) -> Result<(), String> {
     build.args(["--features", "frixel-fuzz/libfuzzer", "--bin", "fuzz"]);
     run("fuzz targets", build.env("RUSTC_WORKSPACE_WRAPPER", absolute(&root().join(COMPILER))?))?;
     let (programs, folder) = (target_folder().join("debug"), target_folder().join("fuzz"));
-    let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs, &folder, extent);
-    let running: Vec<Fuzzer> = TARGETS.into_iter().map(start).collect::<Result<_, _>>()?;
+    let corpora = match extent {
+        Extent::Fixed => folder.join("fixed"),
+        Extent::For(_) => folder.join("corpus"),
+    };
+    if matches!(extent, Extent::Fixed) {
+        remove(&corpora)?;
+    }
+    let targets = text_of(Command::new(programs.join("seeds")).arg(&corpora))?;
+    let targets = targets.lines().filter_map(|line| line.split_once(' '));
+    let start = |(name, inputs)| Fuzzer::start(name, inputs, &programs.join("fuzz"), &folder, &corpora, extent);
+    let running: Vec<Fuzzer> = targets.map(start).collect::<Result<_, _>>()?;
     let failures: Vec<String> = running.into_iter().filter_map(|fuzzer| fuzzer.end().err()).collect();
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
-/// A target that runs.
+/// A running target.
 struct Fuzzer {
-    name: &'static str,
+    name: String,
     process: Child,
-    /// What it writes.
+    /// The file of its output.
     log: PathBuf,
 }
 
 impl Fuzzer {
-    fn start(name: &'static str, inputs: u32, programs: &Path, folder: &Path, extent: Extent) -> Result<Self, String> {
+    fn start(
+        name: &str,
+        inputs: &str,
+        program: &Path,
+        folder: &Path,
+        corpora: &Path,
+        extent: Extent,
+    ) -> Result<Self, String> {
         let explain = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
-        let corpus = match extent {
-            Extent::Fixed => folder.join("fixed").join(name),
-            Extent::For(_) => folder.join("corpus").join(name),
-        };
-        if matches!(extent, Extent::Fixed) {
-            remove(&corpus)?;
-        }
         let found = folder.join("found");
-        for folder in [&corpus, &found] {
-            fs::create_dir_all(folder).map_err(|error| explain(folder, error))?;
-        }
-        let mut command = Command::new(programs.join("fuzz"));
-        command.env("TARGET", name).arg(&corpus);
-        match name {
-            "scene_text" => drop(command.arg(root().join("scenes"))),
-            "scenario" => drop(command.arg(root().join("hil-sim/scenarios"))),
-            _ => {
-                let seeds = programs.join("seeds");
-                run(&format!("seeds of {name}"), Command::new(seeds).arg(name).arg(&corpus))?;
-            }
-        }
+        fs::create_dir_all(&found).map_err(|error| explain(&found, error))?;
+        let mut command = Command::new(program);
+        command.env("TARGET", name).arg(corpora.join(name));
         command.arg(format!("-artifact_prefix={}/{name}-", found.display()));
         command.arg(format!("-timeout={}", INPUT_MAX.as_secs()));
         match extent {
@@ -88,7 +78,7 @@ impl Fuzzer {
         let log = folder.join(format!("{name}.log"));
         let file = File::create(&log).map_err(|error| explain(&log, error))?;
         let process = command.stderr(file).spawn().map_err(|error| format!("{command:?}: {error}"))?;
-        Ok(Self { name, process, log })
+        Ok(Self { name: name.to_owned(), process, log })
     }
 
     /// Waits until it ends, and prints how many inputs it has tried.

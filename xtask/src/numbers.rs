@@ -133,6 +133,12 @@ fn committed() -> Result<BTreeMap<String, Value>, String> {
     serde_json::from_str(&read(COMMITTED)?).map_err(|error| format!("{COMMITTED}: {error}"))
 }
 
+/// The committed figures without their date.
+#[cfg(test)]
+pub(crate) fn committed_figures() -> Result<Figures, String> {
+    Ok(committed()?.into_iter().filter_map(|(name, value)| Some((name, value.as_u64()?))).collect())
+}
+
 fn read(path: &str) -> Result<String, String> {
     command::text(&root().join(path))
 }
