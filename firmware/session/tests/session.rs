@@ -4,10 +4,10 @@
 use crate::support::bitmap;
 use crate::support::{COMMIT_POLLS_MAX, HEADER, TestBoard, constant, constant_scene, record, request, scene};
 use frixel_control::{Board, Order};
-use frixel_layers::{Constant, HEADER_LEN, Header, Layer, RECORD_LEN, Scene};
+use frixel_layers::{Constant, HEADER_LEN, Header, Layer, RECORD_LEN};
 #[cfg(feature = "bitmap")]
 use frixel_layers::{Record, Region};
-use frixel_session::{Touch, table_rows};
+use frixel_session::Touch;
 use frixel_wire::fault::{Fault, State};
 use frixel_wire::frame::crc32;
 use frixel_wire::hello::{BoardLimits, feature};
@@ -432,21 +432,6 @@ fn bitmaps_of_a_refused_scene_are_evicted() {
     }
     assert!(matches!(board.upload_bitmap(200, 100, &vec![4; 20_000]), Err(Refusal::BitmapPoolFull { .. })));
     assert_eq!(board.upload_bitmap(200, 100, &vec![5; 20_000]), Ok(Accepted::Done));
-}
-
-/// `frixel-model` tests that the rows are those of the whole table.
-#[test]
-fn a_table_ends_at_the_headers_largest_friction() {
-    let of = |electric_friction_max_n| {
-        let bytes = scene(&Header { electric_friction_max_n, ..HEADER }, &[constant(0.001)]);
-        table_rows(&Scene::parse(&bytes).unwrap(), &Board::SIMULATOR).unwrap()
-    };
-    let whole = of(None);
-    assert_eq!(whole.filled, whole.whole);
-    assert_eq!(of(Some(f32::MAX)), whole, "out of reach");
-    // Four rows an octave.
-    assert_eq!(of(Some(0.02)).filled, of(Some(0.01)).filled + 4);
-    assert_eq!(of(Some(0.0)).filled, 1);
 }
 
 /// The session's orders for a command, without signs of life.

@@ -145,13 +145,3 @@ fn a_largest_friction_of_nan_is_refused() {
         );
     }
 }
-
-#[test]
-fn a_scene_with_fixed_layers_refuses_changes() {
-    let mut board = TestBoard::new();
-    board.play(&scene(&Header { layers_fixed: true, ..HEADER }, &[constant(0.01)]));
-    let change = Command::SetLayer { layer: 0, on: true, gain: 2.0 };
-    assert_eq!(board.command(change), Err(Refusal::LayersFixed));
-    board.load(&scene(&HEADER, &[constant(0.01)])).unwrap();
-    assert!(board.command(change).is_ok());
-}
