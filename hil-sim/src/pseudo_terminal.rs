@@ -125,13 +125,13 @@ mod presence {
     }
 }
 
-/// Other systems do not report when a client closes the terminal. A client counts as gone after a long silence.
+/// Other systems do not report when a client closes the terminal, so a silent client counts as gone.
 #[cfg(not(target_os = "linux"))]
 mod presence {
     use std::io;
     use std::time::{Duration, Instant};
 
-    /// Clients send pings several times as often.
+    /// Silence after which a client counts as gone. Clients send several pings in this time.
     const CLIENT_GONE_AFTER: Duration = Duration::from_millis(500);
 
     /// Tracks when bytes from a client last arrived.

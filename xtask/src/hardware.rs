@@ -96,7 +96,7 @@ struct Net {
     boxed: bool,
 }
 
-/// What a builder measures with everything connected, off and at 0 V.
+/// A measurement by the builder, with everything connected, off and at 0 V.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Measure {
@@ -118,7 +118,7 @@ enum Unit {
     Farad,
 }
 
-/// What a part supplies to a net or takes from it.
+/// The current that a part supplies to a net or takes from it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Current {

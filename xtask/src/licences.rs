@@ -13,7 +13,7 @@ pub(crate) struct Program {
     pub(crate) folder: &'static str,
     /// Its package, if it is not that of the folder.
     pub(crate) package: Option<&'static str>,
-    /// What it is compiled for, if not for this machine.
+    /// Compiler target; `None` for this machine.
     pub(crate) target: Option<&'static str>,
     /// Features, as arguments of cargo; none for the default ones.
     pub(crate) features: &'static [&'static str],

@@ -10,7 +10,7 @@ use crate::studio_tests::install;
 const FOLDER: &str = "hil-sim/pico";
 /// The emulator, in the folder of its packages.
 const EMULATOR: &str = "node_modules/rp2040js";
-/// What the emulator's package has that the programs use: its modules for browsers and node, with their licence.
+/// Parts of the emulator's package that the programs use: its modules for browsers and node, with their licence.
 const EMULATOR_PARTS: [&str; 3] = ["package.json", "LICENSE", "dist/esm"];
 
 fn folder() -> PathBuf {

@@ -43,7 +43,7 @@ const CARRIED: [(&str, &str, &str); 9] = [
 ];
 /// The script that unpacks the files.
 const BOOT: &str = "boot.js";
-/// What makes a widget of the element.
+/// The script that turns the element into a widget.
 const WIDGET: &str = "host/studio/web/element/widget.js";
 /// The module of the widget, in the Python package.
 const WIDGET_MODULE: &str = "host/python/python/frixel/widget.js";

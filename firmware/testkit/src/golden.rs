@@ -61,7 +61,7 @@ fn first_difference(held: &str, made: &str) -> String {
     }
 }
 
-/// What to do when a golden file differs, with the command that blesses the golden files of the running test.
+/// Advice when a golden file differs, with the command that blesses the golden files of the running test.
 pub fn how_to_bless() -> String {
     let package = env::var("CARGO_PKG_NAME").map(|name| format!(" -p {name}")).unwrap_or_default();
     // The test harness names the thread of a test after the test, unless all run on its main thread.

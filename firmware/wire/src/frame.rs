@@ -9,7 +9,7 @@
 //! let mut decoder = Decoder::new();
 //! let mut input = sent;
 //! assert_eq!(decoder.next_frame(&mut input), Some(&b"hello"[..]));
-//! # Ok::<(), frixel_wire::frame::PayloadLength>(())
+//! # Ok::<(), frixel_wire::frame::PayloadLengthError>(())
 //! ```
 
 use core::fmt;
@@ -80,22 +80,22 @@ impl fmt::Debug for Crc32 {
 
 /// The payload is empty, or longer than [`PAYLOAD_MAX_LEN`] bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PayloadLength {
+pub struct PayloadLengthError {
     /// Bytes of the payload.
     pub len: usize,
 }
 
-impl fmt::Display for PayloadLength {
+impl fmt::Display for PayloadLengthError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "the payload has {} bytes, but a frame holds 1 to {PAYLOAD_MAX_LEN}: split a longer one", self.len)
     }
 }
 
-impl core::error::Error for PayloadLength {}
+impl core::error::Error for PayloadLengthError {}
 
 /// Encodes a payload as a frame and returns the frame's bytes, including the zero byte.
-pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadLength> {
-    let wrong_length = PayloadLength { len: payload.len() };
+pub fn encode<'f>(payload: &[u8], frame: &'f mut [u8; FRAME_MAX_LEN]) -> Result<&'f [u8], PayloadLengthError> {
+    let wrong_length = PayloadLengthError { len: payload.len() };
     if !(1..=PAYLOAD_MAX_LEN).contains(&payload.len()) {
         return Err(wrong_length);
     }

@@ -1,7 +1,7 @@
 //! Frames on a line that loses, changes and adds bytes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
-use frixel_wire::frame::{Crc32, Decoder, FRAME_MAX_LEN, PayloadLength, crc32, encode};
+use frixel_wire::frame::{Crc32, Decoder, FRAME_MAX_LEN, PayloadLengthError, crc32, encode};
 use frixel_wire::payload::PAYLOAD_MAX_LEN;
 use proptest::prelude::*;
 
@@ -107,7 +107,7 @@ fn payload() -> impl Strategy<Value = Vec<u8>> {
 #[test]
 fn empty_and_overlong_payloads_are_refused() {
     for len in [0, PAYLOAD_MAX_LEN + 1] {
-        assert_eq!(encode(&vec![0x55; len], &mut [0; FRAME_MAX_LEN]), Err(PayloadLength { len }));
+        assert_eq!(encode(&vec![0x55; len], &mut [0; FRAME_MAX_LEN]), Err(PayloadLengthError { len }));
     }
 }
 

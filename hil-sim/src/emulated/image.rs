@@ -31,7 +31,7 @@ pub enum EmulatedBoard {
     PicoWithFrame,
 }
 
-/// What runs and builds a board's image.
+/// The tools that run and build a board's image.
 struct Tools {
     /// Its emulator: the program, what needs it, and Debian's packages.
     emulator: (&'static str, &'static str, &'static str),

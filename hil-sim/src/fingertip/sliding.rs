@@ -14,7 +14,7 @@ pub struct SlipStep {
     pub share: f64,
     /// Unit vector of the motion's direction. Always `[1, 0]` without pre-sliding.
     pub direction: [f64; 2],
-    /// Electric friction at this tick's load over that at the load of the profile, at the same voltage.
+    /// Ratio of the electric friction at this tick's load to that at the profile's load, at the same voltage.
     pub electric_gain: f64,
 }
 

@@ -156,8 +156,8 @@ impl<L: Link> Device<L> {
         Ok(())
     }
 
-    /// Whether a program may arm the board: a simulated one always, and a board with an electrode with the consent of a
-    /// person.
+    /// Whether a program may arm the board. A board with an electrode needs a person's consent, and a simulated one
+    /// does not.
     pub fn may_arm(&self, has_consent: bool) -> bool {
         has_consent || self.hello.board.is_simulated()
     }
@@ -312,8 +312,8 @@ impl<L: Link> Device<L> {
         Ok(())
     }
 
-    /// Sets the ping period. If another client committed the scene of an armed board, or during a commit, the host
-    /// timeout may be the shortest one.
+    /// Sets the ping period. The host timeout of an armed board is unknown during a commit, and if another client
+    /// committed its scene; pings then suit the shortest timeout.
     fn pace_pings(&mut self) {
         let period = if self.armed { self.committed.unwrap_or(PING_PERIOD_MIN) } else { PING_PERIOD_MAX };
         self.exchange.link.keep_alive(period);

@@ -71,7 +71,7 @@ pub struct MetricsSummary {
     pub ticks: u64,
     /// Observed ticks with the finger on the screen.
     pub finger_down_ticks: u64,
-    /// Those ticks before the first report of a touch reached the board. They have no friction error.
+    /// Ticks of a touch before its first report reached the board. They have no friction error.
     pub unreported_ticks: u64,
     /// Ticks in which the board clamped its target.
     pub saturated_ticks: Option<u64>,

@@ -33,7 +33,7 @@ impl OutputFile {
 
     /// Begins a recording. Fails if an earlier one was interrupted, with `advice` on how to keep its rows. If the
     /// output overwrites, the old rows stay until the first new ones are written.
-    pub fn record(&self, advice: &'static str) -> Result<FileWriter, Error> {
+    pub fn begin_recording(&self, advice: &'static str) -> Result<FileWriter, Error> {
         let Some((partial, earlier)) = self.open_partial()? else { return self.create() };
         if !self.overwrites && has_rows(&earlier) {
             return Err(Error::CutOff(self.partial(), advice));

@@ -91,7 +91,7 @@ fn a_new_file_replaces_none_that_came_meanwhile() {
         let folder = Folder::new();
         let output = folder.output("rows", "");
         let mut writer = if is_recording {
-            recording(&folder.path("rows"), false).record("keep them").unwrap()
+            recording(&folder.path("rows"), false).begin_recording("keep them").unwrap()
         } else {
             output.create().unwrap()
         };
@@ -180,9 +180,9 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
         ("A letter.", "is in the way, and no recording left it"),
     ] {
         fs::write(folder.path("rows.csv.partial"), earlier).unwrap();
-        let error = recording(&path, false).record("keep them").unwrap_err().to_string();
+        let error = recording(&path, false).begin_recording("keep them").unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
-        let mut writer = recording(&path, true).record("keep them").unwrap();
+        let mut writer = recording(&path, true).begin_recording("keep them").unwrap();
         writer.write_all(b"t_s,x_mm\n").and_then(|()| writer.flush()).unwrap();
         assert_eq!(partial().as_deref(), Some(earlier), "a header is no row");
         drop(writer);
@@ -190,7 +190,7 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     }
     assert!(recording(&path, false).resume().is_err(), "a letter is not finished");
     assert_eq!(partial().as_deref(), Some("A letter."));
-    let mut writer = recording(&path, true).record("keep them").unwrap();
+    let mut writer = recording(&path, true).begin_recording("keep them").unwrap();
     writer.write_all(b"t_s,x_mm\n0,2\n").unwrap();
     drop(writer);
     fs::write(folder.path("rows.csv.partial"), partial().unwrap() + "9.12").unwrap();
@@ -199,11 +199,11 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     writer.write_all(b"1,2\n").unwrap();
     writer.commit().unwrap();
     assert_eq!((folder.text("rows.csv").as_deref(), folder.count()), (Some("t_s,x_mm\n0,2\n1,2\n"), 1));
-    let mut writer = recording(&path, true).record("keep them").unwrap();
+    let mut writer = recording(&path, true).begin_recording("keep them").unwrap();
     writer.write_all(b"t_s,x_mm\n").unwrap();
     drop(writer);
     assert_eq!(folder.count(), 1, "what never had a row leaves nothing");
-    let mut writer = recording(&path, true).record("keep them").unwrap();
+    let mut writer = recording(&path, true).begin_recording("keep them").unwrap();
     writer.write_all(b"t_s,x_mm\n").unwrap();
     writer.commit().unwrap();
     assert_eq!((folder.text("rows.csv").as_deref(), folder.count()), (Some("t_s,x_mm\n"), 1), "a header is whole");
@@ -219,7 +219,7 @@ fn a_device_in_place_of_a_file_is_not_read() {
     assert!(!is_of_person(&folder.path("felt.csv")));
     link("rows.csv.partial");
     let rows = recording(&folder.path("rows.csv"), false);
-    assert!(!rows.is_cut_off() && rows.record("keep them").is_err() && rows.resume().is_err());
+    assert!(!rows.is_cut_off() && rows.begin_recording("keep them").is_err() && rows.resume().is_err());
     fs::remove_file(folder.path("rows.csv.partial")).unwrap();
     File::create(folder.path("rows.csv.partial")).unwrap().set_len(8 << 30).unwrap();
     let error = rows.resume().unwrap_err().to_string();

@@ -74,7 +74,7 @@ pub enum InputError {
     /// The input has more of something, such as rows, than is read.
     #[error("it has {found} {what}, and at most {max} are read")]
     TooMany {
-        /// What is counted.
+        /// The counted items, in words.
         what: &'static str,
         /// Number of these in the input, or one more than the limit.
         found: u64,
@@ -84,7 +84,7 @@ pub enum InputError {
     /// It is not a regular file.
     #[error("it is a {what}, and a regular file is expected")]
     NotAFile {
-        /// What it is.
+        /// Kind of the file, in words.
         what: &'static str,
     },
     /// The operating system has nothing to read at this time.

@@ -1,4 +1,4 @@
-//! What is measured of fingers and of scenes: values in, values out, on any host.
+//! Measurements on fingers and scenes: values in, values out, on any host.
 //!
 //! - [`calibration`]: the protocol of a calibration, and the join of what board and force sensor saw.
 //! - [`fit`]: a finger's profile from such a recording.

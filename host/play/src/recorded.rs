@@ -12,7 +12,7 @@ pub trait Recorded {
     /// The recorder of the play.
     fn recorder_mut(&mut self) -> &mut Self::Recorder;
 
-    /// Called when the scene begins to play. The first call starts the record, and the stroke of a simulated finger.
+    /// Called whenever the scene begins to play. The first call starts the recording and a simulated finger's stroke.
     fn begin(&mut self) -> Result<(), LinkClosed> {
         Ok(())
     }

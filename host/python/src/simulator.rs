@@ -157,7 +157,7 @@ impl Settings<'_> {
         }
     }
 
-    /// The texts of the files that the options name [`PlayOptions::FILE`].
+    /// Contents of the files of the options, by option: [`PlayOptions::FINGER`] and the others.
     fn files(&self, scene: &Scene) -> BTreeMap<String, String> {
         let text = |profile: Option<&ProfileText>| profile.and_then(ProfileText::text).map(str::to_owned);
         let texts = [

@@ -25,7 +25,7 @@ const SCREEN_MM: [f64; 2] = [120.0, 80.0];
 struct Addition {
     /// The word on its button, which is also the layer's name.
     name: &'static str,
-    /// What a finger meets, one sentence.
+    /// Description of the layer, one sentence.
     words: &'static str,
     place: Place,
     /// The lines of the layer behind its name, for a box.
@@ -36,9 +36,9 @@ struct Addition {
 enum Place {
     /// On the whole screen.
     Screen,
-    /// On the whole screen in New, and in a box of [`PART`] of the screen when it is added.
+    /// On the whole screen in New; in a scene that it is added to, in a box of [`PART`] of the screen.
     ScreenInNew,
-    /// In a box: that of New, in mm, and the parts of the screen when it is added.
+    /// In a box: in New, its place in mm; in a scene that it is added to, its size as parts of the screen.
     Box { new_mm: BoxMm, part: [f64; 2] },
     /// A picture, placed by the ratio of its sides.
     Picture,
@@ -298,7 +298,7 @@ struct Added {
     layer: Wanted,
     /// Width and height of the screen.
     screen_mm: [f64; 2],
-    /// What lies there.
+    /// Boxes of the layers that are there.
     taken_mm: Vec<BoxMm>,
 }
 

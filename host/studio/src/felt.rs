@@ -1,4 +1,4 @@
-//! What the simulated finger felt, as the page draws and plays it.
+//! Felt friction of the simulated finger, as the page draws and plays it.
 
 use frixel_felt::recorder::{FeltRow, Observation, Recorder};
 use frixel_hil_sim::{Felt, RigTick, Status};

@@ -39,7 +39,7 @@ pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &
     scene.layer_tables().into_iter().map(describe).collect()
 }
 
-/// What is felt of a layer, as numbers: its verdict and sizes are those that the command prints.
+/// The judgement of a layer, as numbers: the verdict and sizes that the command prints.
 fn perceived(layer: &LayerVerdict) -> Value {
     let step = layer.main_step();
     let texture = |Texture { speed_mm_per_s, frequency_hz, amplitude_n, threshold_n, verdict, .. }: &Texture| {

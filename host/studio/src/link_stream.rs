@@ -12,7 +12,7 @@ use frixel_wire::message::Telemetry;
 
 /// Bytes that one read takes at most.
 const READ_MAX: usize = 4_096;
-/// What `link_write` and `link_read` return when the stream is closed, or closed to the call under way.
+/// Returned by `link_write` and `link_read` if the stream is closed, or closed to the call under way.
 const CLOSED: i32 = -1;
 
 /// The stream that `remote_board.js` has connected this instance to.

@@ -17,7 +17,7 @@ pub(crate) struct PointerStream<'a> {
     rig: Rig<'a>,
     /// The finger on the screen.
     pub(crate) pointer: Pointer,
-    /// What it felt.
+    /// Felt friction.
     pub(crate) felt: FeltSampler,
     touch: TouchFollower,
     /// Places of the finger as seen by the board in the last tick.

@@ -1,4 +1,4 @@
-//! What the page passes in the input buffer: a scene with its files, or a line of text.
+//! The page's request in the input buffer: a scene with its files, or a line of text.
 //!
 //! The buffer begins with the length of a JSON text (32 bits, little-endian) and the text. The bytes of the files
 //! follow, one file after another, in the order and with the lengths that the text states.

@@ -121,7 +121,7 @@ impl Simulator {
         stream_mut(&mut self.host).felt.take()
     }
 
-    /// What was felt since the last call, and the board's state, as the bytes that `board.js` reads.
+    /// Felt friction since the last call, and the board's state, as the bytes that `board.js` reads.
     pub(crate) fn take_frame(&mut self) -> Vec<u8> {
         let (state, fault) = self.state();
         let is_touched = stream_mut(&mut self.host).is_touched();

@@ -28,7 +28,7 @@ const OF_SCENES: [&str; 5] = ["version", "[[layer", "[defaults", "[finger", "[sc
 const OF_PROFILES: [(&str, &str); 3] =
     [("friction_coefficient", "finger"), ("reports_per_s", "touch"), ("width_mm", "screen")];
 
-/// What a text is, by its fields, so that a profile with mistakes is one, too. All else is read as a scene.
+/// The kind of a text, by its fields, so that a profile with mistakes is recognised. Other texts are read as scenes.
 fn kind(text: &str) -> &'static str {
     let begins = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
     if OF_SCENES.into_iter().any(begins) {

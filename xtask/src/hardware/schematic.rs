@@ -199,7 +199,7 @@ impl Drawing {
     }
 }
 
-/// What a part is, up to its first remark.
+/// The description of a part, up to its first remark.
 fn short(what: &str) -> &str {
     what.split([',', ':', '(']).next().unwrap_or_default().trim()
 }

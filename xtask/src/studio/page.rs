@@ -54,7 +54,7 @@ fn joined(index: &str, web: &Path, files: &Files, place: &Place) -> Result<Strin
     Ok(format!("{before}<head>\n    {policy}{behind}"))
 }
 
-/// What the page may load: what it carries, and manifest, icons and service worker of its site.
+/// The content security policy of the page: it loads its own parts, and the manifest, icons and worker of its site.
 fn policy(boot: &str, of_site: &str) -> String {
     let boot = STANDARD.encode(Sha256::digest(boot.as_bytes()));
     let manifest = if of_site.is_empty() { " 'none'" } else { of_site };
@@ -76,7 +76,7 @@ fn with_styles(index: &str, web: &Path) -> Result<String, String> {
     Ok(page)
 }
 
-/// What is before the first `start`, between it and the next `end`, and behind that.
+/// The text before the first `start`, between it and the next `end`, and behind that.
 fn around<'t>(text: &'t str, start: &str, end: &str) -> Option<(&'t str, &'t str, &'t str)> {
     let (before, rest) = text.split_once(start)?;
     let (within, behind) = rest.split_once(end)?;

@@ -77,7 +77,7 @@ fn site(carried: &Files, address: Option<&str>) -> Result<Files, String> {
     Ok(site)
 }
 
-/// What stands in the head of the site's page in place of the icon's line.
+/// The lines in the head of the site's page that replace the icon's line.
 fn head(address: Option<&str>) -> String {
     let mut lines = vec![
         "<link rel=\"icon\" href=\"icon.svg\" type=\"image/svg+xml\" />".to_owned(),

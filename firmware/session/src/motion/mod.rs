@@ -37,7 +37,7 @@ impl Motion {
         Self { fingers: Fingers::new(), tracker: Tracker::new(board) }
     }
 
-    /// Processes a finger's place reported by the host, as of the next tick.
+    /// Processes a host's report of a finger's place, which takes effect at the next tick.
     pub(crate) fn touch(
         &mut self,
         finger: u8,

@@ -47,9 +47,9 @@ pub(crate) enum Loading {
 }
 
 impl Loading {
-    /// Does the next step of computing the coefficients of `scene` into `active`, in well below a millisecond on a
-    /// board (on an RP2040, 8 ms). Returns whether it was the last step. If the scene is refused, `active` holds no
-    /// scene; before the last step, its content must not be used.
+    /// Computes the next part of the coefficients of `scene` into `active`, and returns whether it was the last one. A
+    /// step takes well under a millisecond, and 8 ms on an RP2040. Before the last step, the content of `active` must
+    /// not be used; if the scene is refused, `active` holds no scene.
     pub(crate) fn step(
         &mut self,
         active: &mut Active,

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::{CHUNK_LEN, CHUNK_NUMBER_MAX, PAYLOAD_MAX_LEN, SAMPLES_MAX};
-use crate::frame::PayloadLength;
+use crate::frame::PayloadLengthError;
 use crate::hello::HelloError;
 
 /// Why a payload cannot be read.
@@ -88,8 +88,8 @@ impl fmt::Display for WriteError {
 
 impl core::error::Error for WriteError {}
 
-impl From<PayloadLength> for WriteError {
-    fn from(_: PayloadLength) -> Self {
+impl From<PayloadLengthError> for WriteError {
+    fn from(_: PayloadLengthError) -> Self {
         Self::TooLong
     }
 }

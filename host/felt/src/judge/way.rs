@@ -184,7 +184,8 @@ impl Way {
         (self.length_m() / STEP_M) as usize + 1
     }
 
-    /// Friction after each step of the way, there and back, N: the mean over places so far `beside_m` it.
+    /// Friction after each step of the way, there and back, N. It is the mean over places at the distances `beside_m`
+    /// from the way.
     fn frictions_n(&self, [reference, below]: [&Reference; 2], beside_m: &[f64]) -> [Vec<f64>; 2] {
         let count = self.steps();
         let [x, y] = self.direction();

@@ -95,7 +95,7 @@ pub(super) fn run(args: &ScoreArgs) -> Result<()> {
     Ok(())
 }
 
-/// What each finger does.
+/// The trials of each finger.
 fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
     let stroke = match GeneratedStroke::named(&args.stroke) {
         Some(generated) => generated.into(),

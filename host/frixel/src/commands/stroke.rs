@@ -10,8 +10,8 @@ use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
 use frixel_lab::GeneratedStroke;
 use frixel_lab::simulate::{
-    PlayOptions, PlayOptionsError, STRAIGHT_MAX_M_PER_S, StrokeOptions, StrokeOptionsError, TIMES_MAX, part_off_screen,
-    side_mm,
+    PlayOptions, PlayOptionsError, STRAIGHT_MAX_M_PER_S, StrokeOptions, StrokeOptionsError, TIMES_MAX,
+    fraction_off_screen, side_mm,
 };
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Nearest;
@@ -171,7 +171,7 @@ pub(super) fn note_off_screen(
     screen_m: [f64; 2],
     seconds: f64,
 ) -> Result<(), PlayOptionsError> {
-    let part = part_off_screen(stroke, screen_m, seconds)?;
+    let part = fraction_off_screen(stroke, screen_m, seconds)?;
     if part > 0.0 {
         let [width_mm, height_mm] = screen_m.map(side_mm);
         let percent = (100.0 * part).max(0.1);

@@ -212,8 +212,8 @@ impl ProfileNames {
         Ok(scene)
     }
 
-    /// A program without friction of its own, for the reach and the contact of this finger and screen on a board, at
-    /// the highest voltage that a scene has by default.
+    /// An empty scene for this finger and screen, compiled with the default limits of the drive. It states the largest
+    /// friction and the contact on a board.
     pub(crate) fn without_scene(&self, limits: &BoardLimits, tick_hz: u32) -> Result<Program, SceneFileError> {
         let scene = Scene::parse(NO_SCENE, "an empty scene", &BTreeMap::new())?;
         Ok(compile(&self.applied_to(scene)?, limits, tick_hz)?)

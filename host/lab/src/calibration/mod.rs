@@ -40,8 +40,8 @@ pub enum CalibrationError {
     /// The forces cannot be read.
     #[error(transparent)]
     Forces(#[from] TableError),
-    /// What the board reported cannot be read.
-    #[error("what the board reported cannot be read ({}): it was changed", .0.found())]
+    /// The file of the board's telemetry cannot be read.
+    #[error("the board's telemetry cannot be read ({}): its file was changed", .0.found())]
     Board(TableError),
     /// The forces are none of this run, or cannot be joined with it.
     #[error("{0}")]
@@ -173,7 +173,7 @@ mod tests {
             ("time_s,voltage_v_rms,speed_mm_s\n1,2\n", "row 2: expected 3 cells as in the header, found 2"),
         ] {
             let said = read_board(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default();
-            assert!(said.contains(found) && said.ends_with("it was changed"), "{said}");
+            assert!(said.contains(found) && said.ends_with("its file was changed"), "{said}");
         }
     }
 }

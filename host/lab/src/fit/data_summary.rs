@@ -23,6 +23,6 @@ pub struct DataSummary {
     ///
     /// It is that of force sensor and finger together; `None` if the data are inconclusive.
     pub bandwidth_hz: Option<f64>,
-    /// What was left out and corrected before the fit.
+    /// Omissions and corrections before the fit.
     pub preparation: Preparation,
 }

@@ -19,7 +19,7 @@ pub(super) struct Observation {
     pub(super) weight: f64,
 }
 
-/// What an observation measures.
+/// The quantity that an observation measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Measured {
     /// Total friction, in newtons.
@@ -29,7 +29,7 @@ pub(super) enum Measured {
     Attraction(f64),
 }
 
-/// What to fit.
+/// The model to fit, with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
     /// Friction coefficient and coupling.

@@ -72,7 +72,7 @@ pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
 pub use zero::SensorZero;
 
-/// What to fit for.
+/// Settings of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Voltage at which electric friction is stated, in volts rms.

@@ -1,10 +1,10 @@
-//! What was done to a recording before it was fitted.
+//! The preparation of a recording for the fit.
 
 use frixel_scene::brief;
 
 use super::{Division, FaultyStroke, SensorZero};
 
-/// What was left out of a recording, and corrected in it.
+/// Omissions and corrections in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Preparation {
     /// Odd strokes that were left out.
@@ -34,8 +34,8 @@ impl Preparation {
                  {friction_n:.3} N of friction"
             ),
             None => {
-                "no second without contact shows the sensor's zero: a sensor that was not tared shifts the friction \
-                     coefficient (docs/design/outputs.md, \"Taring\")"
+                "the recording has no second without contact, which would show the sensor's zero: a sensor that was \
+                 not tared shifts the friction coefficient (docs/design/outputs.md, \"Taring\")"
                     .to_owned()
             }
         });

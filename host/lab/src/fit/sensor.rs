@@ -156,8 +156,8 @@ fn shift(used: &[StrokeMeans], wider: &[StrokeMeans]) -> Option<Shift> {
     Some(Shift { share, error: error.max(f64::MIN_POSITIVE) })
 }
 
-/// Attractions of a stroke under both edges, weighted by the squares of their voltages, as least squares does for a
-/// square law; `None` without any. A voltage without rows under the wider edges is ignored.
+/// Sums of a stroke's attractions with the used and with the wider edges, weighted by the square of the voltage as in a
+/// least-squares fit of a square law. `None` if no voltage has rows with both edges.
 fn weighted_attractions(used: &StrokeMeans, wider: &StrokeMeans) -> Option<(f64, f64)> {
     let mut sums = None;
     for (voltage_v_rms, attraction_n) in attractions(used) {

@@ -88,7 +88,7 @@ struct Summary<'f> {
 }
 
 impl<'f> Summary<'f> {
-    /// What a fit says without the contact model: `stated` is a voltage, and electric friction there.
+    /// The results of a fit without the contact model. `stated` is a voltage and the electric friction at it.
     fn of(data: &'f DataSummary, strokes: usize, coefficient: Estimate, stated: (f64, Estimate)) -> Self {
         let (stated_voltage_v_rms, electric) = stated;
         let named = Some(electric).filter(|_| (stated_voltage_v_rms - NAMED_V_RMS).abs() < 1e-6);
@@ -226,7 +226,7 @@ fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
     format!("{value:.2} (95 % interval {low:.2} to {high:.2}); the model says {model:.2} and {outcome}")
 }
 
-/// What the data cannot tell, in sentences.
+/// The limits of the data, as sentences.
 fn notes(fit: &Fit) -> Vec<&'static str> {
     let mut notes = vec![
         "friction data cannot tell radius, stiffness and gap apart: they show one coupling number, so radius and \

@@ -39,7 +39,7 @@ pub struct Row {
     pub speed_mm_s: Option<f64>,
 }
 
-/// What a table for a fit has.
+/// The contents of a table for a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
     /// Samples of a force sensor.

@@ -41,7 +41,7 @@ pub fn read_named(path: &Path) -> io::Result<Vec<u8>> {
     read(path, if is_toml { TOML_MAX_BYTES } else { PICTURE_MAX_BYTES })
 }
 
-/// What a file is that is not a regular one. Reading a folder is an error already.
+/// The kind of a file that is not a regular one, in words. Reading a folder fails by itself.
 fn irregular(kind: FileType) -> Option<&'static str> {
     if kind.is_file() || kind.is_dir() {
         return None;

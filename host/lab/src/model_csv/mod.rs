@@ -54,7 +54,7 @@ use number::Number;
 use row::Row;
 use variant::Model;
 
-/// What was processed.
+/// Counts of the processed rows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     /// Number of rows, without the header.

@@ -19,7 +19,7 @@ pub enum RecordingError {
     Metadata {
         /// The key.
         key: &'static str,
-        /// What is wrong.
+        /// The error of the JSON parser.
         source: serde_json::Error,
     },
     /// A table that cannot be read.

@@ -10,7 +10,7 @@ pub struct Field {
     pub name: String,
     /// The unit, as `mm/s`; empty for a number without one and for text.
     pub unit: String,
-    /// What it is, for people.
+    /// Description for readers.
     pub meaning: String,
     /// Type of its values.
     pub kind: Kind,

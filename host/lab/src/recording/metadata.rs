@@ -49,7 +49,7 @@ pub struct Metadata {
     /// Scenes that replaced the first one, or that the board refused, in their order.
     #[serde(skip)]
     pub later_scenes: Vec<LaterScene>,
-    /// What happened, in its order.
+    /// Events, in their order.
     #[serde(skip)]
     pub markers: Vec<Marker>,
 }

@@ -36,7 +36,7 @@ pub const ROWS_PER_GROUP: usize = 65_536;
 /// A recording: columns of equal length, and what is known of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// What made the recording, and what happened meanwhile.
+    /// The inputs of the recording, and the events during it.
     pub metadata: Metadata,
     /// The columns.
     pub columns: Vec<Column>,

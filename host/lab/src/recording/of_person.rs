@@ -11,14 +11,17 @@ use crate::{fit, stroke_file};
 const HEAD: u64 = 64 << 10;
 /// The column that a person's play adds to those of a stroke.
 const PARTICIPANT: &str = "participant";
-/// The line, without blanks, of a profile that rests on what a person felt, and a part of the summary of a person's
-/// play.
+/// A line, without blanks, of a profile based on a person's perception.
 const PERCEPTUAL: &str = "origin=\"perceptual\"";
+/// A part of the summary of a person's play.
 const OF_A_PERSON: &str = "\"simulated\":false";
 
-/// Whether a file is a recording of a person, by its content: a stroke as `--stroke` reads it, friction as `frixel
-/// finger fit` reads it, a profile that rests on what a person felt, or `felt.csv`, `summary.json` or the Parquet file
-/// of a play.
+/// Whether a file is a recording of a person. The content decides:
+///
+/// - a stroke, as `--stroke` reads it,
+/// - friction, as `frixel finger fit` reads it,
+/// - a profile based on a person's perception,
+/// - `felt.csv`, `summary.json` or the Parquet file of a person's play.
 pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     let mut head = Vec::new();
     file.by_ref().take(HEAD).read_to_end(&mut head)?;
@@ -34,7 +37,7 @@ pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     Ok(text.lines().any(is_perceptual) || (text.starts_with('{') && text.contains(OF_A_PERSON)))
 }
 
-/// Whether the columns are those of friction, or those of a stroke without others than a person's play adds.
+/// Whether the table has the columns of friction, or those of a stroke and at most the column of a person's play.
 fn is_table_of_person(head: &[u8]) -> Result<bool, TableError> {
     let mut table = Table::new(head)?;
     if has_all(&mut table, fit::COLUMNS)? {

@@ -13,7 +13,7 @@ use super::{Metadata, Recording, SourceFile};
 use crate::simulate::{PlayOptions, PlayOptionsError};
 use crate::stroke_file::{StrokeFile, StrokeFileError};
 
-/// What messages call the scene.
+/// Name of the scene in messages.
 const SCENE: &str = "the recorded scene";
 
 /// Bytes of files by their names.
@@ -108,7 +108,7 @@ fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError>
     files.iter().map(bytes).collect()
 }
 
-/// Those of them that the first scene names, by the names that it gives them.
+/// The files of the first scene, by the names that it gives them.
 fn of_scene(files: &FileBytes) -> FileBytes {
     let of_scene = |(name, bytes): (&String, &Vec<u8>)| {
         Some((name.strip_prefix(PlayOptions::OF_SCENE)?.to_owned(), bytes.clone()))

@@ -11,7 +11,7 @@ use crate::hash::hex;
 pub(super) const KEY: &str = "frixel.sha256";
 /// The digits before the hash is known.
 pub(super) const UNKNOWN: &str = "0000000000000000000000000000000000000000000000000000000000000000";
-/// What Thrift writes between the key and the digits: a field of bytes, 64 of them.
+/// Thrift's bytes between the key and the digits: a field of 64 bytes.
 const BETWEEN: [u8; 2] = [0x18, 64];
 
 /// A writer that hashes what goes through it.

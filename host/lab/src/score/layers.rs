@@ -67,7 +67,7 @@ impl FromIterator<Verdict> for Verdicts {
     }
 }
 
-/// What simulated fingers felt of a layer that some of them touched. Sizes are medians over these.
+/// Results of the simulated fingers that touched a layer. Sizes are medians over these fingers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayerScore {
     /// Number and title of the layer.
@@ -155,7 +155,7 @@ impl LayerScore {
     }
 }
 
-/// What a finger felt of a layer.
+/// A finger's result for a layer.
 fn on<'f>(finger: &'f Judgement, title: &LayerTitle) -> Option<&'f LayerVerdict> {
     finger.layers.iter().find(|layer| layer.layer == *title)
 }

@@ -31,7 +31,7 @@ pub(super) struct Metric {
 pub struct Human {
     /// The threshold from which a person notices it, in the metric's unit.
     pub value: f64,
-    /// What it is, with its source.
+    /// Definition, with its source.
     pub meaning: &'static str,
 }
 

@@ -89,7 +89,7 @@ pub struct TrialScore {
 /// The score of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// What the score is a verdict on: simulated fingers.
+    /// The subject of the verdict: simulated fingers.
     pub simulated: String,
     /// Which layers the simulated fingers notice, and which levels of friction they tell apart: a sentence that names
     /// those that some fingers do not surely notice, and those of which the strokes say nothing.
@@ -175,7 +175,7 @@ fn world_of(world: &WorldOptions, finger: Option<TrialFinger>) -> WorldOptions {
     WorldOptions { finger: finger.map(|finger| finger.finger).or(world.finger), ..*world }
 }
 
-/// What each finger of some trials feels of a program.
+/// The judgement of each finger of some trials on a program.
 fn judgements(
     program: &Program,
     world: &WorldOptions,

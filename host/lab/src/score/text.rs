@@ -58,7 +58,7 @@ impl Score {
         tables.filter_map(|copies| Some((LayerScore::least(copies)?, copies.len())))
     }
 
-    /// What the score is a verdict on.
+    /// The subject of the verdict.
     pub(super) fn simulated_words(&self) -> String {
         let plural = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
         let fingers = plural(self.simulated_fingers, "simulated finger");

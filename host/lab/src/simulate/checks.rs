@@ -35,7 +35,11 @@ pub fn check_duration(seconds: f64, tick_hz: u32) -> Result<(), PlayOptionsError
 /// Fraction of the first `seconds` of a stroke for which the finger is off a screen of this width and height, in m.
 ///
 /// From 0 to 1. Fails if the finger is never down on the screen.
-pub fn part_off_screen(stroke: &Stroke, [width_m, height_m]: [f64; 2], seconds: f64) -> Result<f64, PlayOptionsError> {
+pub fn fraction_off_screen(
+    stroke: &Stroke,
+    [width_m, height_m]: [f64; 2],
+    seconds: f64,
+) -> Result<f64, PlayOptionsError> {
     let end_s = seconds.min(stroke.duration_s());
     let looks = (end_s / LOOK_PERIOD_S).ceil().clamp(1.0, LOOKS_MAX);
     let (mut on, mut off) = (0_u32, 0_u32);

@@ -12,7 +12,7 @@ use frixel_play::Simulation;
 use frixel_scene::{CompileError, Program, Scene, Shown};
 use thiserror::Error;
 
-pub use checks::{check_duration, part_off_screen, side_mm, ticks_per_row};
+pub use checks::{check_duration, fraction_off_screen, side_mm, ticks_per_row};
 pub use default_stroke::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, default_stroke, endless_sweep};
 pub use options::{PlayOptions, STRAIGHT_MAX_M_PER_S, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX};
 
@@ -87,7 +87,7 @@ impl PlayOptions {
         let stroke = stroke.map_or_else(|| default_stroke(program, seconds), Ok)?;
         let seconds = seconds.unwrap_or(stroke.duration_s());
         check_duration(seconds, tick_hz)?;
-        part_off_screen(&stroke, screen_m(program), seconds)?;
+        fraction_off_screen(&stroke, screen_m(program), seconds)?;
         let is_repeated = self.seconds.is_none() && stroke.duration_s() < seconds;
         let stroke = if is_repeated { stroke.looped(REPEAT_PAUSE_S)? } else { stroke };
         let own_finger = |seed| Person::drawn(seed).own_finger(scene.screen().coating_gap_m());

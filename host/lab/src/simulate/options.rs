@@ -55,8 +55,8 @@ pub struct PlayOptions {
     /// line is carried out when it comes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lines: Option<Vec<String>>,
-    /// Duration of the streamed file, s, which is that of the play without [`Self::seconds`]; `None` for samples on
-    /// standard input.
+    /// Duration of the streamed file, s; `None` for samples from standard input. Without [`Self::seconds`], the play
+    /// has this duration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stream_s: Option<f64>,
     /// Whether the play ended before its time.

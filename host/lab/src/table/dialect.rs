@@ -74,7 +74,7 @@ impl Dialect {
         }
     }
 
-    /// What differs from commas between columns and points in numbers, in words.
+    /// Differences from commas between columns and points in numbers, in words.
     pub(super) fn words(self) -> Vec<String> {
         let has_commas = self.decimal == Decimal::Comma;
         let mut words = Vec::new();

@@ -13,7 +13,7 @@ pub struct TableError {
     source: Option<io::Error>,
 }
 
-/// What to do about an input that is no table.
+/// Advice about an input that is not a table.
 const NO_TABLE: &str = "give a CSV file with a header row";
 
 impl TableError {
@@ -26,7 +26,7 @@ impl TableError {
         Self::new(found, NO_TABLE)
     }
 
-    /// What was found, and what was expected, for a caller that has better advice.
+    /// The found and the expected contents, for a caller with better advice.
     pub fn found(&self) -> &str {
         &self.found
     }

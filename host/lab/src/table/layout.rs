@@ -11,7 +11,7 @@ use csv::{ByteRecord, ReaderBuilder};
 use super::dialect::is_number;
 use super::unit::is_unit;
 
-/// What a comment starts with; the CSV reader knows the first of them only.
+/// First characters of a comment. The CSV reader itself skips only comments with the first of them.
 pub(super) const COMMENTS: [u8; 2] = [b'#', b'%'];
 /// The separator of columns that any number of blanks separates.
 pub(super) const BLANK: u8 = b' ';

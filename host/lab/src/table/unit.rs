@@ -142,7 +142,7 @@ pub(super) fn without_brackets(text: &str) -> &str {
     inside.next().unwrap_or(text).trim()
 }
 
-/// What a header says about the column `name` in `unit`.
+/// The note about a header's column `name` in `unit`.
 ///
 /// It may state another unit in the name (`friction_mn`), or in brackets or after a stroke, as instruments and papers
 /// do: `friction [mN]`, `Friction (mN)`, `friction / mN`.
@@ -219,7 +219,7 @@ fn without_rest<'t>(text: &'t str, rest: &str) -> (&'t str, bool) {
     }
 }
 
-/// What stands before a unit in brackets.
+/// The name before a unit in brackets.
 struct Label {
     /// A unit in the name itself.
     unit: Option<Written>,

@@ -208,7 +208,7 @@ fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> Stri
 /// Quotation marks that text editors put in place of straight ones.
 const CURLY_QUOTES: [char; 6] = ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{ab}'];
 
-/// What to do about a number with a unit.
+/// Advice about a number with a unit.
 pub(super) const UNIT_ADVICE: &str = "leave the unit out: the field's name has it";
 
 /// Whether a value is a number with a unit behind it, as in `4 mm`.

@@ -378,7 +378,7 @@ fn number(log: &mut Log, field: &'static str, range: Range, value: &Spanned<DeVa
     None
 }
 
-/// What to do about a number in quotation marks; `None` for other texts.
+/// Advice about a number in quotation marks; `None` for other texts.
 fn quoted_number_advice(text: &str) -> Option<&'static str> {
     match text.trim() {
         text if text.parse::<f64>().is_ok() => Some("leave the quotation marks out"),

@@ -72,7 +72,7 @@ pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
     Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
-/// What to say of a picture that was given as a scene `file`: a sentence.
+/// The sentence about a picture that was given as a scene `file`.
 pub fn picture_sentence(file: &str) -> String {
     format!("{file}: this is a picture, not a scene file; make a scene of it: frixel new NAME --picture {file}")
 }

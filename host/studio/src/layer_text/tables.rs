@@ -19,7 +19,7 @@ struct Section {
 
 /// A table with a header.
 struct Headed {
-    /// What stands between the value before and the header: empty lines, comments and the header's indent.
+    /// The text between the value before and the header: empty lines, comments and the header's indent.
     prefix: Range<usize>,
     /// Number of the layer that it is, or that it is a part of.
     layer: Option<usize>,

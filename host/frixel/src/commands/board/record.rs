@@ -72,7 +72,7 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
     // Without a port, the recording is finished above.
     let port = args.port.as_deref().unwrap_or_default();
     let interrupt = Interrupt::watch()?;
-    let writer = recording.record(CUT_OFF)?;
+    let writer = recording.begin_recording(CUT_OFF)?;
     let device = Device::connect(port::open(port, &[])?)?;
     let mut device = waiting::watch(device, &interrupt);
     let mut rows = Rows::new(writer, device.hello().tick_hz)?;

@@ -74,7 +74,7 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<()> {
     }
     let interrupt = Interrupt::watch()?;
     // A pipe can be opened only once.
-    let partial = recording.is_file().then(|| recording.record(CUT_OFF)).transpose()?;
+    let partial = recording.is_file().then(|| recording.begin_recording(CUT_OFF)).transpose()?;
     // A file of forces that is missing or invalid ends the command before the run, not after it.
     if let Some(path) = args.forces.as_deref().filter(|path| *path != Path::new("-")) {
         forces::read(path)?;

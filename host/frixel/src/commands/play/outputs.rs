@@ -96,7 +96,7 @@ impl PlayFiles {
         if is_simulated {
             return FeltCsv::new(self.felt.create()?);
         }
-        FeltCsv::of_person(self.felt.record(CUT_OFF)?, args.participant.as_deref())
+        FeltCsv::of_person(self.felt.begin_recording(CUT_OFF)?, args.participant.as_deref())
     }
 
     fn paths(&self) -> Vec<PathBuf> {

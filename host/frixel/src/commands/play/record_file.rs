@@ -53,7 +53,7 @@ impl RecordFile {
         } else {
             output.check_new()?;
             let rows_hz = metadata.tick_hz / metadata.ticks_per_row.max(1);
-            (output.record(CUT_OFF)?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
+            (output.begin_recording(CUT_OFF)?, (PERSON_GROUP_S * rows_hz).max(1) as usize)
         };
         let path = output.path();
         let parquet = ParquetWriter::new(Vec::new(), play_fields()).map_err(at(path.display()))?;

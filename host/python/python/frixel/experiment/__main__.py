@@ -39,7 +39,7 @@ POLL_S = 0.05
 WRONG_MAX = 10
 """Number of consecutive answers that are neither 1 nor 2 after which the trials end."""
 CHECKS_MAX = 30
-"""Largest number of checks: trials at the largest level after the others, which tell feeling from guessing."""
+"""Largest number of checks: final trials at the largest level, which tell whether the person feels or guesses."""
 GUESSED = 1e-3
 """Evidence below which the checks end, because the person guesses."""
 NOISE_S, NOISE_HZ = 60, 44_100

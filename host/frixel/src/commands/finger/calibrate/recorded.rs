@@ -88,7 +88,7 @@ pub(super) fn on_port(
     plan.say(recording)?;
     let from_stdin = if forces == Path::new("-") {
         // A recording that goes to a stream has no partial file, and needs no copy.
-        let copy = if partial.is_some() { Some(forces::copy(args)?.record(CUT_OFF)?) } else { None };
+        let copy = if partial.is_some() { Some(forces::copy(args)?.begin_recording(CUT_OFF)?) } else { None };
         Some(forces::StandardInput::read(copy))
     } else {
         None
