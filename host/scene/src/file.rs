@@ -15,7 +15,7 @@ use super::include::{self, Gathered};
 use super::layer::Layer;
 use super::log::Log;
 use super::mistake::FileMistake;
-use super::pool::PictureBytes;
+use super::pool::PictureFiles;
 use super::scene_profiles::{self, ProfileSource, Profiles};
 use super::screen::Screen;
 use super::source::{Places, Source};
@@ -36,7 +36,7 @@ pub struct Scene {
     /// The mistakes of the absent layers.
     pub(super) mistakes: Vec<Diagnostic>,
     /// The pictures that layers name, including layers with mistakes, since these may be valid on another screen.
-    pub(super) pictures: PictureBytes,
+    pub(super) pictures: PictureFiles,
     pub(super) profiles: Profiles,
     pub(super) drive: Drive,
     pub(super) carrier: Carrier,
@@ -245,21 +245,21 @@ fn read(named: &dyn Files, log: &mut Log) -> Option<Scene> {
 }
 
 /// Reads the pictures of these names, except those that would exceed [`PICTURES_MAX_BYTES`].
-fn pictures(names: Vec<String>, files: &dyn Files) -> PictureBytes {
-    let mut pictures = PictureBytes::new();
+fn pictures(names: Vec<String>, files: &dyn Files) -> PictureFiles {
+    let mut pictures = PictureFiles::new();
     let mut left = PICTURES_MAX_BYTES;
     for name in names {
         let Entry::Vacant(entry) = pictures.entry(name) else { continue };
-        let bytes = files.bytes(entry.key()).and_then(|bytes| match left.checked_sub(bytes.len()) {
+        let file = files.shared(entry.key()).and_then(|file| match left.checked_sub(file.bytes.len()) {
             Some(rest) => {
                 left = rest;
-                Ok(bytes)
+                Ok(file)
             }
             None => Err(FileUnavailable::Unreadable {
                 reason: format!("the pictures of a scene have at most {PICTURES_MAX_BYTES} bytes together"),
             }),
         });
-        entry.insert(bytes);
+        entry.insert(file);
     }
     pictures
 }

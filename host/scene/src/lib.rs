@@ -88,7 +88,7 @@ pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind};
 pub use fields::has_unit;
 pub use file::Scene;
-pub use files::{FileUnavailable, Files};
+pub use files::{FileUnavailable, Files, SharedFile, SharedFiles};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
 pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};

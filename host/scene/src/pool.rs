@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use frixel_layers::Bitmap as Record;
 
 use super::file::Scene;
-use super::files::{FileUnavailable, file_name};
+use super::files::{FileUnavailable, SharedFile, file_name};
 use super::kinds::{Bitmap as BitmapLayer, Kind, Levels, PITCH_MM};
 use super::layer::{Layer, Rectangle, Region};
 use super::log::Log;
@@ -18,8 +19,8 @@ use super::printable::printable;
 use super::program::Bitmap;
 use super::resample::{Axis, resample};
 
-/// The bytes of each picture that a scene names, or the reason why they are not available.
-pub(super) type PictureBytes = BTreeMap<String, Result<Vec<u8>, FileUnavailable>>;
+/// The file of each picture that a scene names, or the reason why it is not available.
+pub(super) type PictureFiles = BTreeMap<String, Result<Arc<SharedFile>, FileUnavailable>>;
 
 /// Collects the bitmaps of a scene without duplicates, and checks that they fit into the pool.
 pub(super) struct Pool {
@@ -32,7 +33,7 @@ pub(super) struct Pool {
 }
 
 /// The pictures of a scene, each decoded once, or the reason why a picture cannot be used.
-pub(super) type Decoded = BTreeMap<String, Result<Picture, FileMistake>>;
+pub(super) type Decoded = BTreeMap<String, Result<Arc<Picture>, FileMistake>>;
 
 /// The reason why a picture has no place in the pool.
 pub(super) enum Unplaced {
@@ -239,9 +240,9 @@ pub(super) fn decoded(scene: &Scene, pixels_max: usize) -> Decoded {
         if let Kind::Bitmap(bitmap) = &layer.kind {
             // `Scene::parse` has read every picture named by a layer.
             let unread = Err(FileUnavailable::Unreadable { reason: "the scene was read without it".to_owned() });
-            let bytes = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
+            let file = scene.pictures.get(&bitmap.picture).unwrap_or(&unread);
             decoded.entry(bitmap.picture.clone()).or_insert_with(|| {
-                let picture = picture(&bitmap.picture, bytes, pixels_left);
+                let picture = picture(&bitmap.picture, file, pixels_left);
                 pixels_left -= picture.as_ref().map_or(0, |picture| picture.width * picture.height);
                 picture
             });
@@ -250,12 +251,16 @@ pub(super) fn decoded(scene: &Scene, pixels_max: usize) -> Decoded {
     decoded
 }
 
-fn picture(name: &str, bytes: &Result<Vec<u8>, FileUnavailable>, pixels_max: usize) -> Result<Picture, FileMistake> {
+fn picture(
+    name: &str,
+    file: &Result<Arc<SharedFile>, FileUnavailable>,
+    pixels_max: usize,
+) -> Result<Arc<Picture>, FileMistake> {
     if name.is_empty() {
         return Err(FileMistake::NoFileName { field: "picture" });
     }
-    let bytes = bytes.as_ref().map_err(|unavailable| FileMistake::unavailable("picture", name, unavailable))?;
-    Picture::decode(bytes, pixels_max).map_err(|error| FileMistake::FileUnusable {
+    let file = file.as_ref().map_err(|unavailable| FileMistake::unavailable("picture", name, unavailable))?;
+    file.picture(pixels_max).map_err(|error| FileMistake::FileUnusable {
         what: "picture",
         file: name.to_owned(),
         reason: error.to_string(),

@@ -138,7 +138,7 @@ impl Picture {
     }
 }
 
-fn refuse_too_large(width: usize, height: usize, pixels_max: usize) -> Result<(), PictureError> {
+pub(super) fn refuse_too_large(width: usize, height: usize, pixels_max: usize) -> Result<(), PictureError> {
     match width.saturating_mul(height) {
         pixels if pixels > PIXELS_MAX => Err(PictureError::TooLarge { width, height }),
         pixels if pixels > pixels_max => Err(PictureError::TooLargeTogether { width, height }),

@@ -1,7 +1,9 @@
 //! The pitch that a scene leaves open, and the levels of pictures.
 
+use std::sync::Arc;
+
 use super::*;
-use crate::pool;
+use crate::{SharedFiles, pool};
 
 const SHORT: &str = "version = 1\n";
 
@@ -28,6 +30,20 @@ fn the_pictures_of_a_scene_have_so_many_pixels_together() {
     let error = decoded["textures/leather.png"].as_ref().expect_err("it is refused").to_string();
     let says = "it has 200 x 200 pixels, and the pictures of a scene have at most 67108864 together: make them smaller";
     assert!(error.ends_with(says), "{error}");
+}
+
+/// Scenes that share a file have one decoded picture, and each has its own limit of pixels.
+#[test]
+fn scenes_that_share_a_picture_decode_it_once() {
+    let files = SharedFiles::from(PICTURES.clone());
+    let text = format!("{SHORT}{}", layer("brick.png", 0, 40, ""));
+    let scenes = [(); 2].map(|()| Scene::parse(&text, "scene.toml", &files).expect("it reads"));
+    let decoded = |scene, pixels| pool::decoded(scene, pixels).remove("textures/brick.png").expect("it is named");
+    let [one, other] = scenes.each_ref().map(|scene| decoded(scene, 512 * 512).expect("it is decoded"));
+    assert!(Arc::ptr_eq(&one, &other));
+    assert!(decoded(&scenes[0], 512 * 512 - 1).is_err());
+    let own = Scene::parse(&text, "scene.toml", &*PICTURES).expect("it reads");
+    assert!(one == decoded(&own, 512 * 512).expect("it is decoded"));
 }
 
 #[test]
