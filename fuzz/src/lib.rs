@@ -8,6 +8,7 @@
 )]
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,7 +17,7 @@ use frixel_driver::{Device, DeviceError, PollingLink, Upload, ignore_progress};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::recording::{Metadata, Recording};
-use frixel_lab::sweep::{Plan, PlanError, Source};
+use frixel_lab::sweep::{Plan, Source, Sweep};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
 use frixel_play::{RigStream, board_costs};
@@ -193,11 +194,10 @@ fn plan(text: &str) {
         return;
     }
     let scene = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.1\n";
-    let source = |name: &str| {
-        Ok::<_, PlanError>(Source { name: name.to_owned(), text: scene.to_owned(), files: BTreeMap::new() })
-    };
-    for cell in plan.cells(source, |_, _| Ok(String::new())).unwrap_or_default() {
-        assert_eq!(cell.key().len(), 32);
+    let source = |name: &str| Ok::<_, Infallible>(Source::new(name, scene.to_owned(), BTreeMap::new()));
+    let Ok(sweep) = Sweep::new(plan, source, |_, _| Ok(String::new()));
+    for number in (0..sweep.index().cells()).chain(sweep.samples()) {
+        assert!(sweep.cell(number).map_or(true, |cell| cell.key.len() == 32));
     }
 }
 

@@ -5,6 +5,7 @@
 //! |---|---|---|
 //! | a result, which can be computed again | [`OutputFile::create`] | a hidden file beside it, removed on failure |
 //! | a recording of a person | [`OutputFile::record`] | `FILE.partial`, in whole rows, kept on failure |
+//! | lines to which a later process adds | [`OutputFile::append`] | under its own name, in whole lines |
 //! | a log that others read while it grows | [`OutputFile::create_live`] | under its own name, in whole rows |
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.

@@ -3,10 +3,15 @@
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, stdout};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use crate::identity::{is_open_at, is_same_file};
 use crate::writer::{NewFile, Sink};
 use crate::{Error, FileWriter, Inputs, is_of_person, writing};
+
+/// Time between tries to open a file that another process has.
+const BUSY_PERIOD: Duration = Duration::from_millis(10);
 
 /// Whether a name is that of standard output: `-`, or one of the file or device that it was opened as.
 fn is_standard_output(path: &Path) -> bool {
@@ -145,6 +150,20 @@ impl OutputFile {
     /// complete rows.
     pub fn create_live(&self) -> Result<FileWriter, Error> {
         self.create()?.live()
+    }
+
+    /// Opens a file of lines, to which this process alone appends, and calls `each` with those that are there. Waits
+    /// until no other process appends. The part of a line that a killed process left is removed.
+    pub fn append(&self, each: impl FnMut(&[u8])) -> Result<FileWriter, Error> {
+        let Some(file) = &self.file else { return self.create() };
+        let mut lines = loop {
+            match NewFile::open(&self.path, file, file) {
+                Err(Error::Busy(_)) => thread::sleep(BUSY_PERIOD),
+                opened => break opened?,
+            }
+        };
+        lines.stay(each).map_err(writing(&self.path))?;
+        Ok(FileWriter::new(&self.path, Sink::File(lines)))
     }
 
     /// Writes the whole file.

@@ -44,6 +44,34 @@ fn recording(path: &Path, overwrites: bool) -> OutputFile {
     OutputFile::recording(path, "-o", &Inputs::default(), overwrites).unwrap()
 }
 
+#[test]
+fn lines_are_appended_behind_the_whole_ones() {
+    let folder = Folder::new();
+    let output = folder.output("lines", "one\ntwo\nthr");
+    let append = || {
+        let mut there = Vec::new();
+        let writer = output.append(|line| there.push(String::from_utf8_lossy(line).into_owned())).unwrap();
+        (writer, there)
+    };
+    let (mut writer, there) = append();
+    assert_eq!(there, ["one", "two"]);
+    assert_eq!(folder.text("lines").as_deref(), Some("one\ntwo\n"), "no line is cut off");
+    writeln!(writer, "three").unwrap();
+    writer.flush().unwrap();
+    assert_eq!(folder.text("lines").as_deref(), Some("one\ntwo\nthree\n"), "as a killed process leaves it");
+    // Another process waits, and then has the lines of this one.
+    let there = std::thread::scope(|scope| {
+        let other = scope.spawn(|| append().1);
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        assert!(!other.is_finished());
+        writeln!(writer, "four").unwrap();
+        writer.commit().unwrap();
+        other.join().unwrap()
+    });
+    assert_eq!((there.len(), folder.count()), (4, 1));
+    assert!(folder.output("new", "").append(|_| panic!("there is no line")).is_ok());
+}
+
 /// Whatever ends the renaming, every name has a whole file: the last one has not been replaced yet.
 #[test]
 fn a_set_that_is_renamed_in_part_has_lost_no_file() {

@@ -6,6 +6,7 @@ use std::mem;
 use std::path::{Path, PathBuf};
 
 use frixel_lab::hash::hex;
+use frixel_lab::input::whole_lines;
 use frixel_lab::recording::MAGIC as PARQUET;
 use sha2::{Digest, Sha256};
 use tempfile::{NamedTempFile, PathPersistError, TempPath};
@@ -184,6 +185,16 @@ impl NewFile {
             begins_at: Some(0),
             failed: None,
         })
+    }
+
+    /// Makes the temporary name the last one, and places the next bytes behind the whole lines.
+    pub(crate) fn stay(&mut self, each: impl FnMut(&[u8])) -> io::Result<()> {
+        if let Some(mut name) = self.temporary.take() {
+            name.disable_cleanup(true);
+        }
+        self.keeps_rows = true;
+        self.begins_at = Some(whole_lines(&self.file, each)?);
+        self.append(&[])
     }
 
     /// Whether these bytes have no row yet, so that the rows of an earlier recording are kept.

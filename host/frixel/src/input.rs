@@ -3,7 +3,9 @@
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-pub(crate) use frixel_lab::input::{Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, read_named};
+pub(crate) use frixel_lab::input::{
+    Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, read_named, whole_lines,
+};
 
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
 pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;

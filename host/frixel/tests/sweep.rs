@@ -13,6 +13,7 @@ const PLAN: &str = "scenes = [\"plate.toml\"]\npeople = 3\nstrokes = 2\nseeds = 
                     [parameters]\n\"layer.1.friction_fraction\" = [0.02, 0.9]\n";
 const RESULTS: [&str; 7] =
     ["layers.csv", "fingers.csv", "numbers.csv", "layers.parquet", "fingers.parquet", "numbers.parquet", "sweep.svg"];
+const CELLS: &str = "cells/1-of-1.jsonl";
 
 struct Folder(TempDir);
 
@@ -28,23 +29,33 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// What the command says, or its error.
-    fn run(&self, line: &str) -> Result<String, String> {
+    /// What the command says, and its error, if it fails.
+    fn run_to_end(&self, line: &str) -> (String, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
         let output = command.args(line.split_whitespace()).current_dir(self.0.path()).output().unwrap();
+        assert_eq!(output.status.success(), output.stderr.is_empty());
         let text = |bytes| String::from_utf8(bytes).unwrap();
-        if output.status.success() { Ok(text(output.stdout)) } else { Err(text(output.stderr)) }
+        (text(output.stdout), text(output.stderr))
+    }
+
+    /// What the command says, or its error.
+    fn run(&self, line: &str) -> Result<String, String> {
+        let (said, error) = self.run_to_end(line);
+        if error.is_empty() { Ok(said) } else { Err(error) }
     }
 
     fn results(&self, out: &str) -> [Vec<u8>; 7] {
         RESULTS.map(|name| fs::read(self.path(out).join(name)).unwrap())
     }
 
-    fn cells(&self, out: &str) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.path(out).join("cells")).unwrap();
-        let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-        paths.sort();
-        paths
+    /// The lines of the only part.
+    fn cells(&self, out: &str) -> Vec<String> {
+        let text = fs::read_to_string(self.path(out).join(CELLS)).unwrap();
+        text.lines().map(ToOwned::to_owned).collect()
+    }
+
+    fn write_cells(&self, out: &str, cells: &[String]) {
+        fs::write(self.path(out).join(CELLS), cells.join("\n") + "\n").unwrap();
     }
 }
 
@@ -91,36 +102,60 @@ fn what_is_there_is_not_played_again() {
     let folder = Folder::new(PLAN);
     folder.run("sweep plan.toml -o out").unwrap();
     let (results, cells) = (folder.results("out"), folder.cells("out"));
-    assert_eq!(cells.len(), 6 + 1, "and the plan's");
-    fs::remove_file(&cells[2]).unwrap();
+    assert_eq!(cells.len(), 6);
+    // The line that was being written is there in part.
+    let path = folder.path("out").join(CELLS);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, &text[..text.len() - 2]).unwrap();
     let error = folder.run("sweep merge out").unwrap_err();
     assert!(error.contains("out: 5 of 6 cells are there: play the others with `frixel sweep"), "{error}");
     let said = folder.run("sweep plan.toml -o out").unwrap();
     assert!(said.contains("1 played, 5 already there, of 6"), "{said}");
     assert!(folder.results("out") == results && folder.cells("out") == cells);
-    // Another value plays its own cells only.
+    // Another value plays its own cells only, also in parts, and of the cells of other parts none.
     fs::write(folder.path("plan.toml"), PLAN.replace("[0.02, 0.9]", "[0.02, 0.5, 0.9]")).unwrap();
+    let said = folder.run("sweep plan.toml -o out --shard 1/2").unwrap();
+    assert!(said.contains("1 played, 4 already there, of 9"), "{said}");
     let said = folder.run("sweep plan.toml -o out").unwrap();
-    assert!(said.contains("3 played, 6 already there, of 9"), "{said}");
+    assert!(said.contains("2 played, 7 already there, of 9"), "{said}");
 }
 
-/// A file that was copied over another one, or changed, is not a result.
+/// A line that is there twice, or was changed, is not another result.
 #[test]
-fn the_result_of_another_cell_and_a_changed_one_are_refused() {
+fn the_result_of_another_cell_and_a_changed_one_do_not_count() {
     let folder = Folder::new(PLAN);
     folder.run("sweep plan.toml -o study").unwrap();
-    let cells = folder.cells("study");
-    let [one, other, ..] = &cells[..] else { panic!("{cells:?}") };
-    let text = fs::read_to_string(one).unwrap();
-    fs::copy(other, one).unwrap();
+    let (results, cells) = (folder.results("study"), folder.cells("study"));
+    for damaged in [cells[1].clone(), cells[0].replacen("plate", "plain", 1), "{".to_owned(), "\u{e9}".to_owned()] {
+        folder.write_cells("study", &[&[damaged], &cells[1..]].concat());
+        let error = folder.run("sweep merge study").unwrap_err();
+        assert!(error.contains("study: 5 of 6 cells are there"), "{error}");
+        let said = folder.run("sweep plan.toml -o study").unwrap();
+        assert!(said.contains("1 played, 5 already there, of 6"), "{said}");
+        assert!(folder.results("study") == results);
+    }
+    fs::write(folder.path("study/cells/plan.json"), "{}").unwrap();
     let error = folder.run("sweep merge study").unwrap_err();
-    assert!(error.contains("is not a result of a cell (it is that of the cell "), "{error}");
-    fs::write(one, text.replacen("plate", "plain", 1)).unwrap();
-    let error = folder.run("sweep merge study").unwrap_err();
-    assert!(error.contains("its content has another hash than it says"), "{error}");
-    fs::write(one, "{").unwrap();
-    let error = folder.run("sweep merge study").unwrap_err();
-    assert!(error.contains("is not a result of a cell") && error.contains("delete it"), "{error}");
-    fs::write(one, text).unwrap();
-    folder.run("sweep merge study").unwrap();
+    assert!(
+        error.contains("is not a list of the cells of a sweep") && error.contains("play the sweep again"),
+        "{error}"
+    );
+}
+
+/// Each value of the lists is checked before the first play, and a combination when it is played: the others are played
+/// as well.
+#[test]
+fn a_combination_that_is_refused_leaves_the_others() {
+    let values = "\"layer.1.region.x_mm\" = [20, 100]\n\"layer.1.region.width_mm\" = [10, 80]\n";
+    let folder = Folder::new(&PLAN.replace("\"layer.1.friction_fraction\" = [0.02, 0.9]\n", values));
+    for (had, played) in [(0, 9), (9, 0)] {
+        let (said, error) = folder.run_to_end("sweep plan.toml -o out");
+        assert!(said.contains(&format!("{played} played, 3 refused, {had} already there, of 12")), "{said}");
+        let names = "frixel: plate.toml with layer.1.region.width_mm = 80, layer.1.region.x_mm = 100: plate.toml:";
+        assert!(error.starts_with(names) && error.contains("past the right edge"), "{error}");
+    }
+    fs::write(folder.path("plan.toml"), PLAN.replace("[0.02, 0.9]", "[0.02, 1.9]")).unwrap();
+    let (said, error) = folder.run_to_end("sweep plan.toml -o other");
+    assert!(said.is_empty() && error.contains("`friction_fraction = 1.9` is out of range"), "{said}{error}");
+    assert!(!folder.path("other").exists());
 }

@@ -3,7 +3,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
 
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use thiserror::Error;
@@ -96,6 +96,19 @@ impl From<InputError> for io::Error {
     fn from(error: InputError) -> Self {
         Self::other(error)
     }
+}
+
+/// Calls `each` with every line that has an end, and returns their bytes. A process that was killed may have left a part
+/// of a line behind them.
+pub fn whole_lines(input: impl Read, mut each: impl FnMut(&[u8])) -> io::Result<u64> {
+    let (mut input, mut line, mut bytes) = (BufReader::new(input), Vec::new(), 0);
+    while input.read_until(b'\n', &mut line)? > 0 {
+        let Some(text) = line.strip_suffix(b"\n") else { break };
+        each(text);
+        bytes += line.len() as u64;
+        line.clear();
+    }
+    Ok(bytes)
 }
 
 /// A reader that fails after a number of bytes.

@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_lab::input::{TOML_MAX_BYTES, read};
-use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, json};
+use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, Sweep, json};
 use frixel_scene::Scene as ParsedScene;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -29,7 +29,7 @@ impl From<PlanError> for Raised {
 }
 
 /// The cells of a plan. `name` is its name in messages. `scenes` has the texts and files of scenes that are not files
-/// in `folder`. An interrupt takes effect once the cells are made, between the checks of two combinations.
+/// in `folder`.
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,
@@ -41,14 +41,16 @@ pub(crate) fn sweep_cells(
     let cells = interruptible(py, |goes_on| {
         let plan = Plan::parse(plan, name)?;
         let source = |name: &str| match scenes.get(name) {
-            Some((text, files)) => Ok(Source { name: name.to_owned(), text: text.clone(), files: files.clone() }),
+            Some((text, files)) => Ok(Source::new(name, text.clone(), files.clone())),
             None => source_in(&folder, name),
         };
-        let cells = plan.cells(source, |what, name| text_in(&folder, what, name))?;
-        for cell in cells.iter().filter(|cell| cell.person == 1).take_while(|_| goes_on().is_continue()) {
-            cell.check().map_err(|error| Raised(Python::attach(|py| exception(py, cell, error))))?;
+        let sweep = Sweep::new(plan, source, |what, name| text_in(&folder, what, name))?;
+        for number in sweep.samples().into_iter().take_while(|_| goes_on().is_continue()) {
+            let cell = sweep.cell(number)?;
+            cell.check().map_err(|error| Raised(Python::attach(|py| exception(py, &cell, error))))?;
         }
-        Ok(cells.iter().take_while(|_| goes_on().is_continue()).map(json).collect())
+        let numbers = (0..sweep.index().cells()).take_while(|_| goes_on().is_continue());
+        numbers.map(|number| Ok(json(&sweep.cell(number)?))).collect()
     })?;
     cells.map_err(|Raised(error)| error)
 }
@@ -63,7 +65,7 @@ fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let mistakes = |error| Raised(Python::attach(|py| scene_error(py, &error)));
     ParsedScene::parse_bytes(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source { name: name.to_owned(), text, files: files.into_read() })
+    Ok(Source::new(name, text, files.into_read()))
 }
 
 /// The text of the file of a screen or a touch source.
@@ -96,7 +98,7 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec<String>, NamedBytes<'_>)> {
     let study = py.detach(|| {
-        let results = results.iter().map(|result| CellResult::from_json(result, None));
+        let results = results.iter().map(|result| CellResult::from_json(result));
         let study = Study::new(results.collect::<Result<Vec<_>, _>>()?);
         Ok((study.summary(), study.files()))
     });

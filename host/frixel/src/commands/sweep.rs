@@ -1,27 +1,32 @@
 //! `frixel sweep`: studies of many simulated fingers.
 
-use std::fmt::Display;
-use std::io::{self, IsTerminal, stderr};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::{self, IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
-use frixel_lab::sweep::{Cell, CellResult, KEYS_FILE, Keys, Plan, Study, json, result_file};
+use frixel_lab::sweep::{CELLS, CellResult, Index, Plan, Study, Sweep, json};
 use frixel_play::TO_THE_END;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use serde::Deserialize;
 
 use super::argument::shard;
-use super::error::at;
+use super::error::{at, reading};
 use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
 use crate::scene_file::gathered;
 use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all, create_folder};
 
+/// The file that names the cells of the plan that was played last, in the folder of a study.
+const INDEX: &str = "cells/plan.json";
+/// Extension of files of results, one on each line.
+const LINES: &str = "jsonl";
 /// Time between tries to write a file that another process is writing.
 const WAIT: Duration = Duration::from_millis(10);
 /// Longest time for all tries.
@@ -72,38 +77,54 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let text = text.map_err(|error| unreadable(plan_path, "plan", &error, "check the path"))?;
     let plan = Plan::parse(&text, &plan_path.display().to_string())?;
     let folder = plan_path.parent().unwrap_or(Path::new(""));
-    let cells = cells(&plan, folder)?;
-    for cell in cells.iter().filter(|cell| cell.person == 1) {
-        cell.check().map_err(at(cell.title()))?;
-    }
     let files = plan.scenes.iter().chain(&plan.screens).chain(&plan.touch).map(|name| folder.join(name));
     let inputs = Inputs::new(files.chain([plan_path.to_owned()]));
-    let keys = Keys { cells: cells.iter().map(Cell::key).collect() };
-    let keys_file = out.join(KEYS_FILE);
-    let folder = keys_file.parent().unwrap_or(out);
-    create_folder(folder)?;
-    write_shared(&OutputFile::new(&keys_file, "-o", &inputs)?, &json(&keys))?;
+    let sweep = gather(plan, folder)?;
+    for number in sweep.samples() {
+        let cell = sweep.cell(number)?;
+        cell.check().map_err(at(cell.title()))?;
+    }
+    create_folder(&out.join(CELLS))?;
+    write_shared(&OutputFile::new(&out.join(INDEX), "-o", &inputs)?, &json(sweep.index()))?;
 
     let (part, parts) = args.shard.unwrap_or((1, 1));
-    let own: Vec<(usize, &Cell)> = cells.iter().enumerate().filter(|(number, _)| number % parts == part - 1).collect();
-    let path = |number: usize| out.join(result_file(keys.cells.get(number).map_or("", String::as_str)));
-    let left: Vec<(usize, &Cell)> = own.iter().copied().filter(|(number, _)| !path(*number).exists()).collect();
-    let bar = stderr().is_terminal().then(|| ProgressBar::new(left.len() as u64));
-    args.jobs.run(|| {
-        left.par_iter().try_for_each(|(number, cell)| {
-            let result = cell.play(TO_THE_END).map_err(at(cell.title()))?;
-            write_shared(&OutputFile::new(&path(*number), "-o", &inputs)?, &result.to_json())?;
-            if let Some(bar) = &bar {
-                bar.inc(1);
+    let mut there = BTreeSet::new();
+    for path in result_files(out)? {
+        // On Windows, the file that another process appends to cannot be read. Its cells are played twice.
+        let _ = read_results(&path, |result| _ = there.insert(result.cell));
+    }
+    let own = OutputFile::new(&out.join(format!("{CELLS}/{part}-of-{parts}.{LINES}")), "-o", &inputs)?;
+    let writer = own.append(|line| there.extend(result(line).map(|result| result.cell)))?;
+    let writer = Mutex::new(writer);
+    let play = |number: usize| {
+        let cell = sweep.cell(number)?;
+        cell.play(TO_THE_END).map_err(at(cell.title()))
+    };
+    let numbers = part - 1..sweep.index().cells();
+    let bar = stderr().is_terminal().then(|| ProgressBar::new(numbers.len().div_ceil(parts) as u64));
+    // For each cell of this part, nothing if it was there, or whether it could be played.
+    let outcomes: Vec<Option<Result<()>>> = args.jobs.run(|| {
+        let outcome = |number| {
+            let outcome = (!there.contains(&sweep.index().key(number))).then(|| play(number));
+            if let Some(Ok(result)) = &outcome {
+                let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
+                writeln!(writer, "{}", result.to_json()).and_then(|()| writer.flush())?;
             }
-            anyhow::Ok(())
-        })
+            bar.iter().for_each(|bar| bar.inc(1));
+            anyhow::Ok(outcome.map(|played| played.map(drop)))
+        };
+        numbers.into_par_iter().step_by(parts).map(outcome).collect::<Result<_>>()
     })??;
+    writer.into_inner().unwrap_or_else(PoisonError::into_inner).commit()?;
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let had = own.len() - left.len();
-    print_line(format_args!("  {:<30} {} played, {had} already there, of {}", "cells", left.len(), cells.len()))?;
+    let had = outcomes.iter().filter(|outcome| outcome.is_none()).count();
+    let (played, refused): (Vec<_>, Vec<_>) = outcomes.into_iter().flatten().partition(Result::is_ok);
+    let refusals = if refused.is_empty() { String::new() } else { format!("{} refused, ", refused.len()) };
+    let (played, cells) = (played.len(), sweep.index().cells());
+    print_line(format_args!("  {:<30} {played} played, {refusals}{had} already there, of {cells}", "cells"))?;
+    refused.into_iter().collect::<Result<()>>()?;
     if parts == 1 { merge(out, &inputs) } else { Ok(()) }
 }
 
@@ -121,32 +142,54 @@ fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
     }
 }
 
-/// The cells of a plan, whose files are named relative to its folder.
-fn cells(plan: &Plan, folder: &Path) -> Result<Vec<Cell>> {
+/// A plan with its files, which are named relative to its folder.
+fn gather(plan: Plan, folder: &Path) -> Result<Sweep> {
     let text = |what, name: &str| {
         let path = folder.join(name);
         let advice = "give its file, from the plan's folder, or a bundled one";
         let read = input::read_text(&path, input::TOML_MAX_BYTES);
         read.map_err(|error| unreadable(&path, what, &error, advice))
     };
-    plan.cells(|name| Ok(gathered(&folder.join(name), name)?), text)
+    Sweep::new(plan, |name| Ok(gathered(&folder.join(name), name)?), text)
+}
+
+/// The files of results in the folder of a study, one of each part.
+fn result_files(out: &Path) -> Result<Vec<PathBuf>> {
+    let folder = out.join(CELLS);
+    let entries = fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(reading(&folder))?;
+    let paths = entries.into_iter().map(|entry| entry.path());
+    Ok(paths.filter(|path| path.extension().is_some_and(|end| end == LINES)).collect())
+}
+
+/// Reads the results in a file. A damaged line is none: its cell is played again.
+fn read_results(path: &Path, mut each: impl FnMut(CellResult)) -> io::Result<()> {
+    let lines = input::open(path, u64::MAX)?;
+    input::whole_lines(lines, |line| result(line).into_iter().for_each(&mut each)).map(drop)
+}
+
+fn result(line: &[u8]) -> Option<CellResult> {
+    CellResult::from_json(str::from_utf8(line).ok()?).ok()
 }
 
 /// Puts the results of all cells together.
 fn merge(out: &Path, inputs: &Inputs) -> Result<()> {
-    let keys: Keys = read(&out.join(KEYS_FILE), "list of the cells of a sweep")?;
-    let there: Vec<PathBuf> =
-        keys.cells.iter().map(|key| out.join(result_file(key))).filter(|path| path.exists()).collect();
-    if there.len() < keys.cells.len() {
-        let (folder, found, of) = (out.display(), there.len(), keys.cells.len());
+    let path = out.join(INDEX);
+    let advice = "give the folder of a sweep, which `frixel sweep PLAN.toml -o OUT` makes";
+    let text = input::read(&path, input::CSV_MAX_BYTES);
+    let text = text.map_err(|error| unreadable(&path, "list of the cells of a sweep", &error, advice))?;
+    let index: Index = serde_json::from_slice(&text).map_err(|error| {
+        anyhow!("{} is not a list of the cells of a sweep ({error}): play the sweep again", path.display())
+    })?;
+    let mut there = BTreeMap::new();
+    for path in result_files(out)? {
+        let read = read_results(&path, |result| _ = there.insert(result.cell.clone(), result));
+        read.map_err(reading(&path))?;
+    }
+    let results: Vec<CellResult> = (0..index.cells()).filter_map(|number| there.remove(&index.key(number))).collect();
+    if results.len() < index.cells() {
+        let (folder, found, of) = (out.display(), results.len(), index.cells());
         bail!("{folder}: {found} of {of} cells are there: play the others with `frixel sweep PLAN.toml -o {folder}`");
     }
-    let result = |(key, path): (&String, &PathBuf)| {
-        let what = "result of a cell";
-        let text = String::from_utf8_lossy(&read_bytes(path, what)?).into_owned();
-        CellResult::from_json(&text, Some(key)).map_err(|error| no_sweep_file(path, what, &error))
-    };
-    let results: Vec<CellResult> = keys.cells.iter().zip(&there).map(result).collect::<Result<_, _>>()?;
     let study = Study::new(results);
     let _folder = OutputFolder::open(out)?;
     let files = study.files()?;
@@ -161,19 +204,6 @@ fn merge(out: &Path, inputs: &Inputs) -> Result<()> {
         print_line(format_args!("  {:<30} {}", "wrote", file.path().display()))?;
     }
     Ok(())
-}
-
-fn read<T: for<'de> Deserialize<'de>>(path: &Path, what: &'static str) -> Result<T> {
-    serde_json::from_slice(&read_bytes(path, what)?).map_err(|error| no_sweep_file(path, what, &error))
-}
-
-fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>> {
-    let advice = "give the folder of a sweep, which `frixel sweep PLAN.toml -o OUT` makes";
-    input::read(path, input::CSV_MAX_BYTES).map_err(|error| unreadable(path, what, &error, advice))
-}
-
-fn no_sweep_file(path: &Path, what: &'static str, error: &dyn Display) -> anyhow::Error {
-    anyhow!("{} is not a {what} ({error}): delete it, and play the sweep again", path.display())
 }
 
 fn unreadable(path: &Path, what: &str, error: &io::Error, advice: &str) -> anyhow::Error {

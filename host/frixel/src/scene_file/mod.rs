@@ -135,7 +135,7 @@ pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError
     let kept = KeptFiles { folder: folder_of(path), kept: RefCell::default() };
     Scene::parse_bytes(&bytes, &file, &kept)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source { name: name.to_owned(), text, files: kept.kept.into_inner() })
+    Ok(Source::new(name, text, kept.kept.into_inner()))
 }
 
 /// Keeps the bytes of each file that a scene names.

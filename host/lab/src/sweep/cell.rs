@@ -6,22 +6,20 @@ use frixel_felt::judge::Verdict;
 use frixel_hil_sim::{Board, Person, StrokeError, WorldOptions};
 use frixel_model::ParameterError as ContactError;
 use frixel_play::{GoesOn, SimulationError};
-use frixel_scene::{CompileError, Diagnostic, NamedProfile, ProfileError, Program, Scene, compile};
+use frixel_scene::{CompileError, Diagnostic, NamedProfile, ProfileError, Program, Scene, SharedFiles, compile};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::parameter::{Value, nearest_field};
 use crate::GeneratedStroke;
-use crate::hash::sha256;
 use crate::score::{Score, TrialFinger, TrialPlan};
-
-/// Digits of a hash that make a key.
-const KEY_DIGITS: usize = 32;
 
 /// All that the plays of one simulated finger need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
+    /// Hash of its content: equal for equal cells, and different for different ones.
+    pub key: String,
     /// Version of frixel. Results may differ between versions.
     pub version: String,
     /// Name of the scene.
@@ -31,7 +29,7 @@ pub struct Cell {
     /// Text of the scene, with these values.
     pub text: String,
     /// The bytes of the files that the scene names, by these names.
-    pub files: BTreeMap<String, Vec<u8>>,
+    pub files: SharedFiles,
     /// The screen; absent for the scene's own.
     pub screen: Option<NamedProfile>,
     /// The touch source.
@@ -131,15 +129,6 @@ pub enum CellError {
 }
 
 impl Cell {
-    /// Key of the content: equal for equal cells, and different for different ones.
-    pub fn key(&self) -> String {
-        // Numbers, strings and maps with names always serialise.
-        let content = serde_json::to_vec(self).unwrap_or_default();
-        let mut digits = sha256(&content);
-        digits.truncate(KEY_DIGITS);
-        digits
-    }
-
     /// Name in messages: its scene, and the values that the plan sets.
     pub fn title(&self) -> String {
         let values: Vec<String> = self.parameters.iter().map(|(path, value)| format!("{path} = {value}")).collect();
@@ -172,13 +161,14 @@ impl Cell {
 
     /// Compiles the cell's scene, without playing it. A mistake in one cell is in those of all people.
     pub fn check(&self) -> Result<(), CellError> {
-        self.compiled().map(drop).map_err(|error| match error {
-            CellError::Compile(source) => match self.nearest_field(&source) {
-                Some(nearest) => CellError::Misspelt { nearest, source },
-                None => source.into(),
-            },
-            error => error,
-        })
+        self.compiled().map(drop)
+    }
+
+    fn refused(&self, source: CompileError) -> CellError {
+        match self.nearest_field(&source) {
+            Some(nearest) => CellError::Misspelt { nearest, source },
+            None => source.into(),
+        }
     }
 
     /// The field of the scene that is most like a parameter which the scene does not know.
@@ -189,13 +179,13 @@ impl Cell {
     }
 
     fn compiled(&self) -> Result<(Scene, WorldOptions, Program), CellError> {
-        let mut scene = Scene::parse(&self.text, &self.scene, &self.files)?;
+        let mut scene = Scene::parse(&self.text, &self.scene, &self.files).map_err(|error| self.refused(error))?;
         if let Some(screen) = &self.screen {
             scene = scene.with_screen(screen.read()?, &screen.name);
         }
         let world = WorldOptions { ideal: self.ideal, touch: Some(self.touch.read()?), ..WorldOptions::default() };
         let board = Board::SIMULATOR;
-        let program = compile(&scene, &board.limits, board.tick_hz)?;
+        let program = compile(&scene, &board.limits, board.tick_hz).map_err(|error| self.refused(error))?;
         Ok((scene, world, program))
     }
 
@@ -207,7 +197,7 @@ impl Cell {
             contrast_weber_steps: layer.contrast_weber_steps,
         };
         CellResult {
-            cell: self.key(),
+            cell: self.key.clone(),
             scene: self.scene.clone(),
             parameters: self.parameters.clone(),
             screen: self.screen.as_ref().map(|screen| screen.name.clone()),

@@ -1,11 +1,13 @@
 //! Studies of many simulated fingers: every combination of scenes, screens, touch sources, values of a scene's fields
 //! and people, each a [`Cell`].
 //!
-//! A [`Plan`] says which cells there are. A cell holds all that its plays need, so that it is played by any process on
-//! any machine ([`Cell::play`]), and its key is a hash of that content. [`Study`] puts results together, in whatever
-//! order and by however many processes they were made: intervals are computed from the results of single fingers.
+//! A [`Plan`] says which cells there are, and a [`Sweep`] makes each from its number. A cell holds all that its plays
+//! need, so that it is played by any process on any machine ([`Cell::play`]), and its key is a hash of that content.
+//! [`Study`] puts results together, in whatever order and by however many processes they were made: intervals are
+//! computed from the results of single fingers.
 
 mod cell;
+mod cells;
 mod parameter;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
@@ -15,32 +17,21 @@ mod study;
 #[cfg(not(target_arch = "wasm32"))]
 mod tables;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 pub use cell::{Cell, CellError, CellResult, LayerResult};
+pub use cells::{Index, Source, Sweep};
 pub use parameter::Value;
-pub use plan::{Plan, PlanError, Range, Source, Values};
+pub use plan::{Plan, PlanError, Range, Values};
 pub use result_file::CellResultError;
 pub use study::{Group, LayerShare, Study};
 #[cfg(not(target_arch = "wasm32"))]
 pub use tables::StudyError;
 
-/// The file that names the cells of the plan that was played last, in the folder of a study.
-pub const KEYS_FILE: &str = "cells/plan.json";
+/// The folder of the results of cells, in the folder of a study.
+pub const CELLS: &str = "cells";
 
-/// The keys of the cells of a study, in the order of its plan.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Keys {
-    /// The keys.
-    pub cells: Vec<String>,
-}
-
-/// The file of the result of a cell, in the folder of a study.
-pub fn result_file(key: &str) -> String {
-    format!("cells/{key}.json")
-}
-
-/// The JSON of a cell, of a result, or of keys, as files have it.
+/// The JSON of a cell, of a result, or of an index, as files have it.
 pub fn json(value: &impl Serialize) -> String {
     // Numbers, strings and maps with names always serialise.
     serde_json::to_string(value).unwrap_or_default()

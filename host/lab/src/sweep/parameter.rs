@@ -1,5 +1,7 @@
 //! A field of a scene by its path, and the values that a sweep gives it.
 
+use std::collections::BTreeMap;
+
 use frixel_scene::{Nearest, brief};
 use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item, TableLike};
@@ -56,35 +58,23 @@ impl From<&Value> for toml_edit::Value {
     }
 }
 
-/// The text of a scene with a field set, which is added where the scene does not have it. `path` is the names of tables
-/// and of the field with dots between them; behind `layer` stands the number of a layer, from 1.
-pub(super) fn with_field(text: &str, scene: &str, path: &str, value: &Value) -> Result<String, PlanError> {
+/// The text of a scene with fields set, which are added where the scene does not have them. A path is the names of
+/// tables and of the field with dots between them; behind `layer` stands the number of a layer, from 1.
+pub(super) fn with_fields(text: &str, scene: &str, fields: &BTreeMap<String, Value>) -> Result<String, PlanError> {
     let not_toml = |error: toml_edit::TomlError| format!("{scene} is not TOML: {}", error.to_string().trim_end());
     let mut document: DocumentMut = text.parse().map_err(not_toml).map_err(PlanError)?;
+    for (path, value) in fields {
+        set_at(&mut document, path, value).map_err(|misplaced| misplaced.at(path, scene))?;
+    }
+    Ok(document.to_string())
+}
+
+fn set_at<'p>(document: &mut DocumentMut, path: &'p str, value: &Value) -> Result<(), Misplaced<'p>> {
     let parts: Vec<&str> = path.split('.').collect();
-    let set = match parts.split_last() {
+    match parts.split_last() {
         Some((field, tables)) => set(document.as_table_mut(), tables, field, value),
         None => Err(Misplaced::Part(path)),
-    };
-    set.map_err(|misplaced| {
-        let reason = match misplaced {
-            Misplaced::Part(part) => format!(
-                "\"{}\" is no place for a value in {scene}; a path is that of one field, such as \
-                 \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
-                brief(part)
-            ),
-            Misplaced::Layer(found, count) => {
-                let layers = match count {
-                    0 => "no layers".to_owned(),
-                    1 => "1 layer: write layer.1".to_owned(),
-                    _ => format!("{count} layers: write layer.1 to layer.{count}"),
-                };
-                format!("{scene} has no layer {}, but {layers}", brief(found))
-            }
-        };
-        PlanError(format!("parameter \"{}\": {reason}", brief(path)))
-    })?;
-    Ok(document.to_string())
+    }
 }
 
 /// The field of a scene whose name is nearest to that at a path, in the same table.
@@ -108,6 +98,27 @@ enum Misplaced<'p> {
     Part(&'p str),
     /// It is no layer, of so many.
     Layer(&'p str, usize),
+}
+
+impl Misplaced<'_> {
+    fn at(self, path: &str, scene: &str) -> PlanError {
+        let reason = match self {
+            Self::Part(part) => format!(
+                "\"{}\" is no place for a value in {scene}; a path is that of one field, such as \
+                 \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
+                brief(part)
+            ),
+            Self::Layer(found, count) => {
+                let layers = match count {
+                    0 => "no layers".to_owned(),
+                    1 => "1 layer: write layer.1".to_owned(),
+                    _ => format!("{count} layers: write layer.1 to layer.{count}"),
+                };
+                format!("{scene} has no layer {}, but {layers}", brief(found))
+            }
+        };
+        PlanError(format!("parameter \"{}\": {reason}", brief(path)))
+    }
 }
 
 fn set<'p>(table: &mut dyn TableLike, tables: &[&'p str], field: &'p str, value: &Value) -> Result<(), Misplaced<'p>> {
@@ -155,7 +166,8 @@ mod tests {
                          region = { x_mm = 1, width_mm = 5 }\n";
 
     fn set(path: &str, value: &Value) -> Result<String, String> {
-        with_field(SCENE, "a.toml", path, value).map_err(|error| error.to_string())
+        let fields = BTreeMap::from([(path.to_owned(), value.clone())]);
+        with_fields(SCENE, "a.toml", &fields).map_err(|error| error.to_string())
     }
 
     #[test]

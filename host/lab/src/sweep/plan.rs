@@ -4,12 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{NamedProfile, Nearest, Profile, Screen, brief, check_toml};
-use serde::Deserialize;
+use frixel_scene::{Nearest, brief, check_toml};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::cell::Cell;
-use super::parameter::{Value, with_field};
+use super::parameter::Value;
 use crate::GeneratedStroke;
 use crate::score::TrialPlan;
 
@@ -32,7 +31,7 @@ const PATH_PARTS_MAX: usize = 64;
 /// assert_eq!((plan.people, plan.parameters["layer.1.high_n"].values().len()), (40, 3));
 /// # Ok::<(), frixel_lab::sweep::PlanError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
     /// Scene files.
@@ -96,18 +95,6 @@ fn check_names(plan: &toml::Table, name: &str) -> Result<(), PlanError> {
     Ok(())
 }
 
-/// The profiles that a plan names. A bundled one needs no file; `text` reads the files of the others.
-fn named<P: Profile, E>(
-    names: &[String],
-    text: impl Fn(&'static str, &str) -> Result<String, E>,
-) -> Result<Vec<NamedProfile>, E> {
-    let named = |name: &String| {
-        let text = if P::bundled(name).is_some() { None } else { Some(text(P::KIND, name)?) };
-        Ok(NamedProfile { name: name.clone(), text })
-    };
-    names.iter().map(named).collect()
-}
-
 fn slowest_touch() -> Vec<String> {
     vec![TouchConfig::REALISTIC_NAME.to_owned()]
 }
@@ -125,7 +112,7 @@ fn seconds() -> f64 {
 }
 
 /// The values of a field.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "give a list of values, or { from, to, count }")]
 pub enum Values {
     /// These values.
@@ -136,7 +123,7 @@ pub enum Values {
 }
 
 /// Numbers at equal distances.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Range {
     /// The first one.
@@ -148,18 +135,26 @@ pub struct Range {
 }
 
 impl Values {
+    /// How many there are.
+    fn len(&self) -> usize {
+        match self {
+            Self::List(values) => values.len(),
+            Self::Range(range) => range.count as usize,
+        }
+    }
+
     /// The values.
     pub fn values(&self) -> Vec<Value> {
+        (0..self.len()).filter_map(|number| self.value(number)).collect()
+    }
+
+    fn value(&self, number: usize) -> Option<Value> {
         match self {
-            Self::List(values) => values.clone(),
+            Self::List(values) => values.get(number).cloned(),
             Self::Range(Range { from, to, count }) => {
-                let last = f64::from(count.saturating_sub(1)).max(1.0);
                 // Weighted, so that both ends are exact.
-                let value = |number: u32| {
-                    let part = f64::from(number) / last;
-                    Value::Number(from * (1.0 - part) + to * part)
-                };
-                (0..*count).map(value).collect()
+                let part = number as f64 / f64::from(count.saturating_sub(1)).max(1.0);
+                Some(Value::Number(from * (1.0 - part) + to * part))
             }
         }
     }
@@ -241,9 +236,7 @@ impl Plan {
                 _ => {}
             }
         }
-        let sizes = self.parameters.values().map(|values| values.values().len());
-        let sizes = sizes.chain([self.scenes.len(), self.screens.len().max(1), self.touch.len()]);
-        match sizes.fold(self.people as usize, usize::saturating_mul) {
+        match self.cells() {
             found if found > CELLS_MAX => Err(PlanError(format!(
                 "{name}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it"
             ))),
@@ -251,87 +244,58 @@ impl Plan {
         }
     }
 
-    /// The cells, in the order of the lists: people last. `scene` reads a scene file with the files that it names, and
-    /// `text` the file of a `screen` or a `touch source`, each by the name that the plan has for it.
-    pub fn cells<E: From<PlanError>>(
-        &self,
-        scene: impl Fn(&str) -> Result<Source, E>,
-        text: impl Fn(&'static str, &str) -> Result<String, E>,
-    ) -> Result<Vec<Cell>, E> {
-        let scenes: Vec<Source> = self.scenes.iter().map(|name| scene(name)).collect::<Result<_, _>>()?;
-        let screens = named::<Screen, E>(&self.screens, &text)?;
-        let touch = named::<TouchConfig, E>(&self.touch, &text)?;
-        Ok(self.combinations(&scenes, &screens, &touch)?)
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        let sizes = self.parameters.values().map(Values::len);
+        let sizes = sizes.chain([self.scenes.len(), self.screens.len().max(1), self.touch.len()]);
+        sizes.fold(self.people as usize, usize::saturating_mul)
     }
 
-    fn combinations(
-        &self,
-        scenes: &[Source],
-        screens: &[NamedProfile],
-        touch: &[NamedProfile],
-    ) -> Result<Vec<Cell>, PlanError> {
-        let screens: Vec<Option<&NamedProfile>> =
-            if screens.is_empty() { vec![None] } else { screens.iter().map(Some).collect() };
-        let mut cells = Vec::new();
-        for scene in scenes {
-            for (parameters, text) in self.variants(scene)? {
-                for screen in &screens {
-                    for touch in touch {
-                        let cell = |person| Cell {
-                            version: env!("CARGO_PKG_VERSION").to_owned(),
-                            scene: scene.name.clone(),
-                            parameters: parameters.clone(),
-                            text: text.clone(),
-                            files: scene.files.clone(),
-                            screen: screen.cloned(),
-                            touch: touch.clone(),
-                            person,
-                            stroke: self.stroke,
-                            strokes: self.strokes,
-                            seeds: self.seeds,
-                            seconds: self.seconds,
-                            median_speed_mm_per_s: self.median_speed_mm_per_s,
-                            ideal: self.ideal,
-                        };
-                        cells.extend((1..=self.people).map(cell));
-                    }
-                }
-            }
-        }
-        Ok(cells)
+    /// The place of a cell in the lists. People vary fastest, and scenes slowest.
+    pub(super) fn place(&self, number: usize) -> Place {
+        let mut left = number;
+        let mut within = |len: usize| {
+            let place = left % len.max(1);
+            left /= len.max(1);
+            place
+        };
+        let person = within(self.people as usize) as u64 + 1;
+        let touch = within(self.touch.len());
+        let screen = within(self.screens.len().max(1));
+        let value = |(path, values): (&String, &Values)| Some((path.clone(), values.value(within(values.len()))?));
+        let parameters = self.parameters.iter().rev().filter_map(value).collect();
+        Place { scene: left, parameters, screen, touch, person }
     }
 
-    /// The text of a scene for every combination of the parameters' values.
-    fn variants(&self, scene: &Source) -> Result<Vec<Variant>, PlanError> {
-        let mut variants = vec![(BTreeMap::new(), scene.text.clone())];
-        for (path, values) in &self.parameters {
-            let mut more = Vec::new();
-            for (parameters, text) in &variants {
-                for value in values.values() {
-                    let text = with_field(text, &scene.name, path, &value)?;
-                    let mut parameters = parameters.clone();
-                    parameters.insert(path.clone(), value);
-                    more.push((parameters, text));
-                }
-            }
-            variants = more;
+    /// The numbers of cells that have each scene, screen and touch source, each value of a list, and both ends of a
+    /// range: one of them changes at a time, and the others are the first ones.
+    pub(super) fn samples(&self) -> Vec<usize> {
+        let mut numbers = vec![0];
+        let mut stride = self.people as usize;
+        let mut sample = |len: usize, step: usize| {
+            numbers.extend((step..len).step_by(step).map(|place| place * stride));
+            stride *= len;
+        };
+        sample(self.touch.len(), 1);
+        sample(self.screens.len().max(1), 1);
+        for values in self.parameters.values().rev() {
+            sample(
+                values.len(),
+                if matches!(values, Values::Range(_)) { values.len().saturating_sub(1).max(1) } else { 1 },
+            );
         }
-        Ok(variants)
+        let of_scene = |scene: usize| numbers.iter().map(move |number| scene * stride + number);
+        (0..self.scenes.len()).flat_map(of_scene).collect()
     }
 }
 
-/// The values that a plan sets in a scene, and the scene's text with them.
-type Variant = (BTreeMap<String, Value>, String);
-
-/// A scene file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Source {
-    /// Name, as results have it.
-    pub name: String,
-    /// Text of the scene.
-    pub text: String,
-    /// Contents of the files that the scene names, by name.
-    pub files: BTreeMap<String, Vec<u8>>,
+/// The place of a cell in the lists of its plan.
+pub(super) struct Place {
+    pub(super) scene: usize,
+    pub(super) parameters: BTreeMap<String, Value>,
+    pub(super) screen: usize,
+    pub(super) touch: usize,
+    pub(super) person: u64,
 }
 
 #[cfg(test)]

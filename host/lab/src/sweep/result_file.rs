@@ -1,6 +1,5 @@
-//! The result of a cell as files and messages have it: JSON that begins with the hash of the rest.
+//! The result of a cell as files and messages have it: a line of JSON that begins with the hash of the rest.
 
-use frixel_scene::brief;
 use thiserror::Error;
 
 use super::{CellResult, json};
@@ -20,24 +19,18 @@ pub enum CellResultError {
     /// It has no hash, or another one than its content.
     #[error("its content has another hash than it says, or none: it was changed or damaged")]
     Changed,
-    /// It is the result of another cell.
-    #[error("it is that of the cell {}", brief(.found))]
-    OtherCell {
-        /// Key of that cell.
-        found: String,
-    },
 }
 
 impl CellResult {
-    /// The text of a result's file.
+    /// The text of a result, a line.
     pub fn to_json(&self) -> String {
         let content = json(self);
         let hash = sha256(content.as_bytes());
         format!("{HEAD}{hash}{BEHIND}{}", content.get(1..).unwrap_or_default())
     }
 
-    /// Parses the text of a result file. With a `key`, fails unless the result is that of the cell with this key.
-    pub fn from_json(text: &str, key: Option<&str>) -> Result<Self, CellResultError> {
+    /// Parses the text of a result.
+    pub fn from_json(text: &str) -> Result<Self, CellResultError> {
         let hashed = || {
             let (hash, rest) = text.strip_prefix(HEAD)?.split_at_checked(DIGITS)?;
             Some((hash, format!("{{{}", rest.strip_prefix(BEHIND)?)))
@@ -50,11 +43,7 @@ impl CellResult {
         if sha256(content.as_bytes()) != hash {
             return Err(CellResultError::Changed);
         }
-        let result: Self = serde_json::from_str(&content)?;
-        match key {
-            Some(key) if key != result.cell => Err(CellResultError::OtherCell { found: result.cell }),
-            _ => Ok(result),
-        }
+        Ok(serde_json::from_str(&content)?)
     }
 }
 
@@ -82,15 +71,8 @@ mod tests {
     #[test]
     fn a_result_is_read_as_it_was_written() {
         let text = result("a1").to_json();
-        assert_eq!(CellResult::from_json(&text, Some("a1")).unwrap(), result("a1"));
-        assert_eq!(CellResult::from_json(&text, None).unwrap(), result("a1"));
+        assert_eq!(CellResult::from_json(&text).unwrap(), result("a1"));
         assert!(serde_json::from_str::<CellResult>(&text).is_ok(), "it is JSON for other programs");
-    }
-
-    #[test]
-    fn the_result_of_another_cell_is_refused() {
-        let error = CellResult::from_json(&result("b2").to_json(), Some("a1")).unwrap_err().to_string();
-        assert_eq!(error, "it is that of the cell b2");
     }
 
     #[test]
@@ -99,7 +81,7 @@ mod tests {
         for bit in 0..8 * text.len() {
             let mut bytes = text.clone().into_bytes();
             bytes[bit / 8] ^= 1 << (bit % 8);
-            let refused = str::from_utf8(&bytes).map_or(true, |text| CellResult::from_json(text, Some("a1")).is_err());
+            let refused = str::from_utf8(&bytes).map_or(true, |text| CellResult::from_json(text).is_err());
             assert!(refused, "bit {bit}");
         }
     }

@@ -56,7 +56,8 @@ impl Study {
     pub fn new(results: impl IntoIterator<Item = CellResult>) -> Self {
         let mut groups: Vec<Group> = Vec::new();
         for result in results {
-            match groups.iter_mut().find(|group| group.is_of(&result)) {
+            // From the end, since most results are of the group of the one before.
+            match groups.iter_mut().rfind(|group| group.is_of(&result)) {
                 Some(group) => group.fingers.push(result),
                 None => groups.push(Group {
                     scene: result.scene.clone(),
