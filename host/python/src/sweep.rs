@@ -38,7 +38,7 @@ pub(crate) fn sweep_cells(
     folder: PathBuf,
     scenes: BTreeMap<String, (String, NamedFiles)>,
 ) -> PyResult<Vec<String>> {
-    let cells = interruptible(py, |goes_on| {
+    let cells = interruptible(py, |goes_on| -> Result<Vec<String>, Raised> {
         let plan = Plan::parse(plan, name)?;
         let source = |name: &str| match scenes.get(name) {
             Some((text, files)) => Ok(Source::new(name, text.clone(), files.clone())),

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::{self, IsTerminal, Write, stderr};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -101,7 +101,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
         cell.play(TO_THE_END).map_err(at(cell.title()))
     };
     let numbers = part - 1..sweep.index().cells();
-    let bar = stderr().is_terminal().then(|| ProgressBar::new(numbers.len().div_ceil(parts) as u64));
+    let bar = ProgressBar::new(numbers.len().div_ceil(parts) as u64);
     // For each cell of this part, nothing if it was there, or whether it could be played.
     let outcomes: Vec<Option<Result<()>>> = args.jobs.run(|| {
         let outcome = |number| {
@@ -110,15 +110,13 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
                 let mut writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
                 writeln!(writer, "{}", result.to_json()).and_then(|()| writer.flush())?;
             }
-            bar.iter().for_each(|bar| bar.inc(1));
+            bar.inc(1);
             anyhow::Ok(outcome.map(|played| played.map(drop)))
         };
         numbers.into_par_iter().step_by(parts).map(outcome).collect::<Result<_>>()
     })??;
     writer.into_inner().unwrap_or_else(PoisonError::into_inner).commit()?;
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
+    bar.finish_and_clear();
     let had = outcomes.iter().filter(|outcome| outcome.is_none()).count();
     let (played, refused): (Vec<_>, Vec<_>) = outcomes.into_iter().flatten().partition(Result::is_ok);
     let refusals = if refused.is_empty() { String::new() } else { format!("{} refused, ", refused.len()) };
