@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
+use frixel_lab::input::read;
+
 use crate::identity::{is_open_at, is_same_file};
 use crate::writer::{NewFile, Sink};
 use crate::{Error, FileWriter, Inputs, is_of_person, writing};
@@ -156,12 +158,7 @@ impl OutputFile {
     /// until no other process appends. The part of a line that a killed process left is removed.
     pub fn append(&self, each: impl FnMut(&[u8])) -> Result<FileWriter, Error> {
         let Some(file) = &self.file else { return self.create() };
-        let mut lines = loop {
-            match NewFile::open(&self.path, file, file) {
-                Err(Error::Busy(_)) => thread::sleep(BUSY_PERIOD),
-                opened => break opened?,
-            }
-        };
+        let mut lines = when_free(|| NewFile::open(&self.path, file, file))?;
         lines.stay(each).map_err(writing(&self.path))?;
         Ok(FileWriter::new(&self.path, Sink::File(lines)))
     }
@@ -169,6 +166,12 @@ impl OutputFile {
     /// Writes the whole file.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Error> {
         self.filled(bytes)?.commit()
+    }
+
+    /// Writes the whole file, which other processes may write at the same moment with the same content.
+    pub fn write_shared(&self, bytes: &[u8]) -> Result<(), Error> {
+        let is_there = || read(&self.path, bytes.len() as u64).is_ok_and(|there| there == bytes);
+        when_free(|| if is_there() { Ok(()) } else { self.write(bytes) })
     }
 
     /// Like [`Self::write`], without the commit.
@@ -184,6 +187,16 @@ impl OutputFile {
             return Ok(false);
         }
         self.write(bytes).map(|()| true)
+    }
+}
+
+/// Tries until no other process has the file.
+fn when_free<T>(open: impl Fn() -> Result<T, Error>) -> Result<T, Error> {
+    loop {
+        match open() {
+            Err(Error::Busy(_)) => thread::sleep(BUSY_PERIOD),
+            opened => return opened,
+        }
     }
 }
 

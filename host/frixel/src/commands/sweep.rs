@@ -5,8 +5,6 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::thread;
-use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
@@ -21,16 +19,12 @@ use super::jobs::JobsArgs;
 use super::terminal::print_line;
 use crate::input;
 use crate::scene_file::gathered;
-use frixel_files::{Error, Inputs, OutputFile, OutputFolder, commit_all, create_folder};
+use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all, create_folder};
 
 /// The file that names the cells of the plan that was played last, in the folder of a study.
 const INDEX: &str = "cells/plan.json";
 /// Extension of files of results, one on each line.
 const LINES: &str = "jsonl";
-/// Time between tries to write a file that another process is writing.
-const WAIT: Duration = Duration::from_millis(10);
-/// Longest time for all tries.
-const WAIT_MAX: Duration = Duration::from_secs(10);
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -85,7 +79,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
         cell.check().map_err(at(cell.title()))?;
     }
     create_folder(&out.join(CELLS))?;
-    write_shared(&OutputFile::new(&out.join(INDEX), "-o", &inputs)?, &json(sweep.index()))?;
+    OutputFile::new(&out.join(INDEX), "-o", &inputs)?.write_shared(json(sweep.index()).as_bytes())?;
 
     let (part, parts) = args.shard.unwrap_or((1, 1));
     let mut there = BTreeSet::new();
@@ -124,20 +118,6 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     print_line(format_args!("  {:<30} {played} played, {refusals}{had} already there, of {cells}", "cells"))?;
     refused.into_iter().collect::<Result<()>>()?;
     if parts == 1 { merge(out, &inputs) } else { Ok(()) }
-}
-
-/// Writes a file that other processes of the same sweep may write at the same moment, with the same content.
-fn write_shared(file: &OutputFile, text: &str) -> Result<()> {
-    let begin = Instant::now();
-    loop {
-        if input::read(file.path(), text.len() as u64).is_ok_and(|there| there == text.as_bytes()) {
-            return Ok(());
-        }
-        match file.write(text.as_bytes()) {
-            Err(Error::Busy(_)) if begin.elapsed() < WAIT_MAX => thread::sleep(WAIT),
-            written => return Ok(written?),
-        }
-    }
 }
 
 /// A plan with its files, which are named relative to its folder.

@@ -77,6 +77,8 @@ def play(cell: str) -> str:
     ------
     ParameterError
         The text is not a cell, or a cell of another version.
+    SceneError
+        A board refuses the scene with these values together.
     """
     if not isinstance(cell, str):
         raise refusal("a cell", "a text made by `sweep.cells`", cell)
