@@ -197,3 +197,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
     values = {"layer.1.high_n": [40]}
     with pytest.raises(SceneError, match="40"):
         sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1, "parameters": values})
+    values = {"layer.1.region.width_mm": [10, 80], "layer.1.region.x_mm": [20, 100]}
+    *_, last = sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1, "parameters": values})
+    with pytest.raises(SceneError, match="past the right edge"):
+        sweep.play(last)
