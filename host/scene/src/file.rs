@@ -179,6 +179,12 @@ impl Scene {
         &self.profiles.screen
     }
 
+    /// Width and height of a pixel of the scene's design on its screen, mm.
+    pub fn pixel_mm(&self) -> Option<[f64; 2]> {
+        let PixelSize { width_mm, height_mm } = self.design?.pixel_on(self.screen());
+        Some([width_mm, height_mm])
+    }
+
     /// The finger for which the scene is compiled.
     pub fn finger(&self) -> &FingerProfile {
         &self.profiles.finger

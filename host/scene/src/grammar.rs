@@ -110,7 +110,7 @@ pub(crate) enum Axis {
 }
 
 /// The name of a field without its unit. Fields with the same stem mean the same quantity.
-pub(crate) fn stem(name: &str) -> &str {
+pub fn stem(name: &str) -> &str {
     let units = ["_n", "_fraction", "_factor", "_mm", "_px"];
     units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name)
 }

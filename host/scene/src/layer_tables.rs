@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::DeValue;
+use toml::de::{DeTable, DeValue};
 
 use super::file::Scene;
 use super::layer::{Layer, Rectangle, Region};
 use super::source::SourceFile;
+use super::stack::stack;
 use super::tables::{layer, scene};
 use super::toml_text::toml;
 
@@ -51,6 +52,21 @@ impl Scene {
         }
         let with_bounds = found.into_iter().map(|(table, regions)| LayerTable { bounds_mm: bounds(&regions), ..table });
         with_bounds.collect()
+    }
+
+    /// Each file's name in messages, and the fields that its layers have unless they have them in any unit: from
+    /// `[defaults]` of the file and of those that it includes.
+    pub fn layer_defaults(&self) -> Vec<(&str, DeTable<'_>)> {
+        let files = self.source.files();
+        let own = |file| {
+            let defaults = toml(file).ok()?.remove(scene::DEFAULTS.name)?.into_inner();
+            if let DeValue::Table(table) = defaults { Some(table) } else { None }
+        };
+        let own: Vec<DeTable> = files.iter().map(|file| own(&file.text).unwrap_or_default()).collect();
+        let mut stacked = Vec::new();
+        stack(0, &own, files, &mut stacked);
+        let named = |(number, defaults)| Some((files.get::<usize>(number)?.name.as_str(), defaults));
+        stacked.into_iter().filter_map(named).collect()
     }
 
     /// The table of a layer, without its layers.

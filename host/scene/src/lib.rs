@@ -90,6 +90,7 @@ pub use fields::has_unit;
 pub use file::Scene;
 pub use files::{FileUnavailable, Files, SharedFile, SharedFiles};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
+pub use grammar::stem;
 pub use kinds::{layer_kinds, without_place};
 pub use layer_map::{LayerError, LayerMap};
 pub use layer_tables::LayerTable;

@@ -13,6 +13,7 @@ use super::layer::Layer;
 use super::log::Log;
 use super::mistake::FileMistake;
 use super::schema::variant::known_layer_fields;
+use super::source::SourceFile;
 use super::tables;
 
 /// Every field of any kind of layer.
@@ -37,7 +38,7 @@ impl<'i> LayerTables<'i> {
             defaults.push(own);
         }
         let mut stacked = Vec::new();
-        stack(0, &defaults, log, &mut stacked);
+        stack(0, &defaults, log.source().files(), &mut stacked);
         let mut layers = Vec::new();
         for (number, defaults) in stacked {
             let tables = tables.get_mut(number).map(std::mem::take).unwrap_or_default();
@@ -95,11 +96,16 @@ fn too_many(found: usize) -> FileMistake {
 
 /// The numbers of the files from bottom to top, ending with file `number`, each with the defaults of its layers. Its
 /// own defaults take precedence over those of included files, of which the last one counts.
-fn stack<'i>(number: usize, own: &[DeTable<'i>], log: &Log, stacked: &mut Vec<(usize, DeTable<'i>)>) -> DeTable<'i> {
+pub(super) fn stack<'i>(
+    number: usize,
+    own: &[DeTable<'i>],
+    files: &[SourceFile],
+    stacked: &mut Vec<(usize, DeTable<'i>)>,
+) -> DeTable<'i> {
     let mut defaults = DeTable::new();
-    let includes = log.source().files().get(number).map_or(&[][..], |file| &file.includes);
+    let includes = files.get(number).map_or(&[][..], |file| &file.includes);
     for included in includes {
-        defaults = overlaid(&defaults, stack(*included, own, log, stacked));
+        defaults = overlaid(&defaults, stack(*included, own, files, stacked));
     }
     if let Some(own) = own.get(number) {
         defaults = overlaid(&defaults, own.clone());

@@ -1,20 +1,25 @@
 //! The results of `frixel check` for a scene.
 
+use std::collections::BTreeMap;
+
 use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, Judgement};
 use frixel_hil_sim::{RigConfig, WorldOptions};
 use frixel_play::{SimulationError, TO_THE_END, board_costs, judge};
-use frixel_scene::Scene;
+use frixel_scene::{Scene, Screen};
 use serde_json::{Value, json};
+use toml::de::DeValue;
 
 use crate::answer::{problems, problems_of};
 use crate::host_error::HostError;
+use crate::layer_text;
 use crate::layers::layers;
 use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
-/// a draft (`isDraft`), also `screen`, `layers`, `report` (the text of `frixel check`), and in newtons `lowN`,
+/// a draft (`isDraft`), also `screen`, `layers`, `defaults` (of each file, for `layer_text::read`), `report` (the text of
+/// `frixel check`), and in newtons `lowN`,
 /// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
     answer(request, true)
@@ -61,6 +66,7 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
         "problems": problems,
         "screen": screen(&scene),
         "layers": layers(&scene, &request.entry, &program, &check.judgement),
+        "defaults": defaults(&scene),
         "report": report,
         "lowN": check.targets.least_n,
         "highN": check.targets.most_n,
@@ -70,5 +76,11 @@ fn checked(request: &Request, is_judged: bool) -> Result<Value, HostError> {
 }
 
 fn screen(scene: &Scene) -> Value {
-    json!({ "widthMm": scene.screen().width_mm, "heightMm": scene.screen().height_mm })
+    let Screen { width_mm, height_mm, .. } = scene.screen();
+    json!({ "widthMm": width_mm, "heightMm": height_mm, "pixelMm": scene.pixel_mm() })
+}
+
+fn defaults(scene: &Scene) -> BTreeMap<&str, String> {
+    let as_json = |(name, defaults)| (name, layer_text::json(&DeValue::Table(defaults)));
+    scene.layer_defaults().into_iter().map(as_json).collect()
 }

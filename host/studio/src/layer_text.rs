@@ -10,8 +10,10 @@ mod tables;
 
 use std::ops::Range;
 
+use serde_json::{Map, Value};
 use thiserror::Error;
 
+pub(crate) use json::of as json;
 use node::{Form, Node, entries, parsed};
 
 /// Name of the layers in a scene.
@@ -27,8 +29,8 @@ pub enum TextError {
     /// It is not TOML.
     #[error("this is not TOML: {}", .0.message())]
     Toml(#[from] toml::de::Error),
-    /// The page asks for an edit that this engine does not know. Only a mistake in the page leads to it.
-    #[error("the page asks for no edit that this engine knows")]
+    /// The page asks for something that this engine does not know. Only a mistake in the page leads to it.
+    #[error("the page asks for nothing that this engine knows")]
     Request,
     /// A value would stand in a table that the text does not have.
     #[error("the text has no table {0}: write it first")]
@@ -48,17 +50,24 @@ struct Change<'r> {
     after: &'r str,
 }
 
-/// The values of a text, and the line in which each of its layers begins, from 1: `values` and `lines`, as JSON.
-pub(crate) fn read(text: &str) -> Result<String, TextError> {
+/// Reads a text, as JSON: its `values`; the `lines` in which its layers begin, from 1; and the `fields` of each layer,
+/// with the defaults for those that it has in no unit. The request is the text, a zero character and the defaults, as
+/// `check` answers them, or nothing.
+pub(crate) fn read(request: &str) -> Result<String, TextError> {
+    let (text, defaults) = request.split_once(BETWEEN).unwrap_or((request, "{}"));
+    let defaults: Map<String, Value> = serde_json::from_str(defaults).map_err(|_| TextError::Request)?;
     let root = parsed(text)?;
-    let spans = (0..).map_while(|at| Some(layer(&root, at)?.span()));
-    let lines = spans.scan((1, 0), |(line, before), Range { start, .. }| {
-        *line += text.get(*before..start).unwrap_or_default().matches('\n').count();
-        *before = start;
-        Some(line.to_string())
-    });
-    let lines = lines.collect::<Vec<_>>().join(",");
-    Ok(format!("{{\"values\":{},\"lines\":[{lines}]}}", json::of(root.get_ref())))
+    let (mut line, mut before) = (1, 0);
+    let (mut lines, mut fields) = (Vec::new(), Vec::new());
+    for layer in (0..).map_while(|at| layer(&root, at)) {
+        let Range { start, .. } = layer.span();
+        line += text.get(before..start).unwrap_or_default().matches('\n').count();
+        before = start;
+        lines.push(line.to_string());
+        fields.push(json::with_defaults(layer.get_ref(), &defaults));
+    }
+    let (values, lines, fields) = (json(root.get_ref()), lines.join(","), fields.join(","));
+    Ok(format!("{{\"values\":{values},\"lines\":[{lines}],\"fields\":[{fields}]}}"))
 }
 
 /// Carries out an edit, and returns the new text. The request has these parts, with a zero character between:

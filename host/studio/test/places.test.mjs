@@ -71,10 +71,45 @@ kind = "bitmap"
 picture = "textures/brick.png"
 region = { x_mm = 10, y_mm = 50, width_mm = 20, height_mm = 20 }
 `,
+  included: `version = 1
+include = ["parts/b.toml"]
+[[layer]]
+kind = "constant"
+friction_fraction = 0.5
+[[layer]]
+kind = "edge"
+width_mm = 3
+ridge_fraction = 0.4
+region = { x_px = 500, y_px = 100, width_px = 400, height_px = 200 }
+[[layer]]
+kind = "edge"
+x_mm = 60
+width_mm = 3
+ridge_fraction = 0.4
+region = { x_px = 500, y_px = 100, width_px = 400, height_px = 200 }
+`,
+};
+
+/** What the last of them includes: the place of a layer, and the size of a pixel, stand in other files. */
+const INCLUDED = {
+  "parts/b.toml": `version = 1
+include = ["../c.toml"]
+[design]
+width_px = 1200
+height_px = 400
+[defaults]
+x_px = 600
+y_px = 200
+`,
+  "c.toml": `version = 1
+[defaults]
+x_mm = 10
+region = { x_px = 100, y_mm = 10, width_px = 200, height_mm = 20 }
+`,
 };
 
 /** Runs in the page: moves and resizes each layer of the scenes, and returns what the compiler says of it. */
-async function changeAll(more) {
+async function changeAll([more, included]) {
   const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
   const [{ TomlText }, { placeOf, bounds }] = [await module("toml_text"), await module("place")];
   const names = studio.names("scenes/").filter((name) => /^scenes\/[^/]+\.toml$/.test(name));
@@ -84,12 +119,13 @@ async function changeAll(more) {
       studio.names("scenes/textures/").map(async (name) => [name.slice("scenes/".length), await studio.bytes(name)]),
     ),
   );
-  const check = (text) => studioPage.engine.compile({ ...textures, "a.toml": text }, "a.toml", {});
+  const files = { ...textures, ...included };
+  const check = (text) => studioPage.engine.compile({ ...files, "a.toml": text }, "a.toml", {});
   const list = (box) => [box.x, box.y, box.width, box.height];
   const found = [];
   for (const [name, text] of [...gallery, ...Object.entries(more)]) {
-    const toml = new TomlText(text);
     const before = await check(text);
+    const toml = new TomlText(text, before.defaults["a.toml"]);
     for (const layer of before.layers) {
       const at = toml.layerAt(layer.from[0]);
       const place = placeOf(toml, at, layer, before.screen);
@@ -122,7 +158,7 @@ async function changeAll(more) {
 }
 
 test("the place of a layer in its text is the compiler's, also after it was moved and resized", async () => {
-  const found = await page.evaluate(changeAll, MORE);
+  const found = await page.evaluate(changeAll, [MORE, INCLUDED]);
   for (const { name, what, expected, actual, isWhole, problems = [], areOthersSame = true } of found) {
     const about = `${name}, ${what}: ${JSON.stringify({ expected, actual, problems })}`;
     assert.deepEqual(problems.filter((problem) => !FELT.test(problem)), [], about);
@@ -135,67 +171,20 @@ test("the place of a layer in its text is the compiler's, also after it was move
   assert.ok(count("moved") > 20 && count("resized") > 30, `${count("moved")} moved, ${count("resized")} resized`);
 });
 
-/** Runs in the page: the place of a layer of a file, on a screen of 120 by 80 mm, and the text once it has moved. */
-async function placeIn({ text, boxMm, kind = "constant", byMm = 0 }) {
+/** Runs in the page: the text of a file once its layer has moved, on a screen of 120 by 80 mm. */
+async function movedIn({ text, byMm }) {
   const module = async (name) => import(await studio.moduleUrl(`page/${name}.js`));
   const [{ TomlText }, { placeOf }] = [await module("toml_text"), await module("place")];
   const toml = new TomlText(text);
-  const { move, whyNotMoved, whyNotResized, box, copies } =
-    placeOf(toml, 0, { kind, boxMm }, { widthMm: 120, heightMm: 80 });
-  return { whyNotMoved, whyNotResized, box, copies, moved: whyNotMoved ? text : toml.with(move(byMm, 0)) };
+  const layer = { kind: "constant", boxMm: [10, 4, 4, 4] };
+  return toml.with(placeOf(toml, 0, layer, { widthMm: 120, heightMm: 80, pixelMm: [0.4, 0.4] }).move(byMm, 0));
 }
 
-test("a layer that counts in pixels of a design in another file is not changed", async () => {
-  for (const [fields, kind] of [
-    ["region = { x_mm = 10, y_mm = 10, width_px = 100, height_mm = 20 }"],
-    ["region = { x_mm = 10, y_mm = 10, width_mm = 20, height_px = 100 }"],
-    ["region = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }\nrepeat = { columns = 2, dx_px = 100 }"],
-    ["x_mm = 10\ny_mm = 10\nwidth_px = 100", "bitmap"],
-    ['region = { shape = "polygon", points_px = [[0, 0], [1, 0], [0, 1]] }'],
-  ]) {
-    const text = `version = 1\n[[layer]]\n${fields}\n`;
-    const place = await page.evaluate(placeIn, { text, boxMm: [10, 11, 12, 13], kind });
-    assert.match(place.whyNotMoved, /pixels of a design in another file/, fields);
-    assert.match(place.whyNotResized, /pixels of a design in another file/, fields);
-    assert.deepEqual([place.box, place.copies], [{ x: 10, y: 11, width: 12, height: 13 }, [[0, 0]]], fields);
-  }
-});
-
 test("pixels stay whole, unless one has a part or a step is finer", async () => {
-  // A pixel is 0.4 mm.
-  const text = (x) => `version = 1\n[design]\nwidth_px = 300\nheight_px = 200
-[[layer]]\nregion = { x_px = ${x}, y_px = 10, width_px = 10, height_px = 10 }\n`;
-  const xAfter = async (x, byMm) => {
-    const { moved } = await page.evaluate(placeIn, { text: text(x), boxMm: [10, 4, 4, 4], byMm });
-    return /x_px = ([\d.]+)/.exec(moved)[1];
-  };
+  const text = (x) => `[[layer]]\nregion = { x_px = ${x}, y_px = 10, width_px = 10, height_px = 10 }\n`;
+  const xAfter = async (x, byMm) => /x_px = ([\d.]+)/.exec(await page.evaluate(movedIn, { text: text(x), byMm }))[1];
   assert.equal(await xAfter("30", 1), "33");
   assert.equal(await xAfter("30", 0.1), "30.25");
   assert.equal(await xAfter("30.5", 1), "33.0");
   assert.equal(await xAfter("30.5", 0.4), "31.5");
-});
-
-/** Runs in the page: why the last layer of a file with an include cannot be moved, with these other files. */
-async function whyNotMoved([fields, more]) {
-  const { EditedLayers } = await import(await studio.moduleUrl("page/edited_layers.js"));
-  const text = `version = 1\ninclude = ["parts/b.toml"]\n[[layer]]\n${fields}\n`;
-  const layers = new EditedLayers({ textOf: (file) => (file === undefined ? text : undefined) });
-  const files = { "a.toml": text, ...more };
-  const check = await studioPage.engine.compile(files, "a.toml", {});
-  layers.take(check, files, "a.toml");
-  return layers.all.at(-1).place.whyNotMoved;
-}
-
-test("a place out of defaults of a file that the page carries, or in a folder, is not changed", async () => {
-  const why = (fields, more) => page.evaluate(whyNotMoved, [fields, more]);
-  const constant = 'kind = "constant"\nfriction_fraction = 0.5';
-  const region = "version = 1\n[defaults]\nregion = { x_mm = 10, y_mm = 10, width_mm = 20, height_mm = 20 }\n";
-  assert.match(await why(constant, { "parts/b.toml": region }), /defaults. of an included file/);
-  const further = { "parts/b.toml": 'version = 1\ninclude = ["../c.toml"]\n', "c.toml": region };
-  assert.match(await why(constant, further), /defaults. of an included file/);
-  const edge = 'kind = "edge"\nwidth_mm = 3\nridge_fraction = 0.4\nx_mm = 50';
-  const middle = { "parts/b.toml": "version = 1\n[defaults]\ny_mm = 40\n" };
-  assert.match(await why(edge, middle), /defaults. of an included file/);
-  assert.equal(await why(`${edge}\ny_mm = 30`, middle), "");
-  assert.match(await why(constant, { "parts/b.toml": "version = 1\n" }), /covers the whole screen/);
 });

@@ -214,7 +214,10 @@ fn values_are_read_in_the_order_of_the_text_with_the_lines_of_the_layers() {
         assert_eq!(plain(Value::try_from(&reading["values"]).unwrap()), parsed(&text));
     }
     let text = read("b = 1\na = { d = inf, c = 2020-01-01 }\n").unwrap();
-    assert_eq!(text, r#"{"values":{"b":1.0,"a":{"d":null,"c":"2020-01-01"}},"lines":[]}"#);
+    assert_eq!(text, r#"{"values":{"b":1.0,"a":{"d":null,"c":"2020-01-01"}},"lines":[],"fields":[]}"#);
+    let text = read("layer = [{ low_n = 1, gain = 2 }]\0{\"low_fraction\":3,\"gain\":4,\"x_mm\":5}").unwrap();
+    assert!(text.ends_with(r#""fields":[{"low_n":1.0,"gain":2.0,"x_mm":5}]}"#), "{text}");
+    assert!(matches!(read("\0no JSON"), Err(TextError::Request)));
 }
 
 #[test]

@@ -70,7 +70,8 @@ export type Layer = {
   boxMm: [number, number, number, number] | null;
 };
 
-export type Screen = { widthMm: number; heightMm: number };
+/** `pixelMm` are the sides of a pixel of the scene's design, if it has one. */
+export type Screen = { widthMm: number; heightMm: number; pixelMm?: [number, number] | null };
 /** Friction at no voltage, and the least and the largest that can be reached, N. */
 export type Reach = { naturalN: number; lowN: number; highN: number };
 
@@ -82,6 +83,8 @@ export type Checked = Reach & {
   report: [string, string][];
   reachN: number;
   layers: Layer[];
+  /** Of the layers of each file, by its name, for `read_text`. */
+  defaults: Record<string, string>;
 };
 export type Mistaken = { ok: false; isDraft?: false; report?: undefined; problems: Problem[] };
 export type Check = ({ ok: boolean; problems: Problem[] } & Checked) | Mistaken;

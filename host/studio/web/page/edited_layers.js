@@ -24,6 +24,8 @@ export class EditedLayers {
    * @type {Map<string | undefined, string>}
    */
   #texts = new Map();
+  /** Of the layers of each file. @type {Map<string | undefined, string>} */
+  #defaults = new Map();
 
   /** @param {Editor} editor */
   constructor(editor) {
@@ -70,7 +72,7 @@ export class EditedLayers {
    * @param {Files} files That were checked.
    * @param {string} entry
    */
-  take({ layers, screen }, files, entry) {
+  take({ layers, screen, defaults }, files, entry) {
     const names = new Set([undefined, ...layers.map(({ file }) => file)]);
     /** @type {Map<string | undefined, string>} */
     const texts = new Map();
@@ -81,7 +83,8 @@ export class EditedLayers {
     }
     this.#texts = texts;
     this.screen = screen;
-    const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text)]));
+    this.#defaults = new Map([...names].map((file) => [file, defaults[file ?? entry]]));
+    const parsed = new Map([...texts].map(([file, text]) => [file, new TomlText(text, this.#defaults.get(file))]));
     this.all = layers.map((layer) => {
       const toml = parsed.get(layer.file);
       return this.#describe(layer, toml, toml?.layerAt(layer.from[0]));
@@ -114,7 +117,7 @@ export class EditedLayers {
   #follow(file, now) {
     const text = this.#editor.textOf(file) ?? "";
     this.#texts.set(file, text);
-    const toml = new TomlText(text);
+    const toml = new TomlText(text, this.#defaults.get(file));
     this.all = this.all.map((each) => {
       if (each.layer.file !== file || each.at === undefined) return each;
       const [layer, at] = now(each, each.at);

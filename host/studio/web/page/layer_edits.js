@@ -56,7 +56,7 @@ export class LayerEdits {
    */
   duplicate({ layer, toml, at, place }) {
     if (!toml || at === undefined) throw new Error(place.whyNotMoved);
-    const copied = new TomlText(toml.withCopy(at));
+    const copied = new TomlText(toml.withCopy(at), toml.defaults);
     const own = copied.value(["layer", at + 1, "name"]);
     const name = typeof own === "string" ? freeLayerName(own, this.#names()) : layer.name;
     const { screen } = this.#layers;

@@ -6,7 +6,7 @@ import { layerFields } from "./completion.js";
 /** @import { Reach, Screen } from "../engine/types" */
 /** @import { Schema } from "./completion.js" */
 /** @import { EditedLayer } from "./edited_layers.js" */
-/** @import { Path, TomlText } from "./toml_text.js" */
+/** @import { Fields, Path, TomlText } from "./toml_text.js" */
 /** @typedef {Reach & { reachN: number }} Most Of the scene's check. */
 /**
  * A number of a layer, and what it means in a few words. `least` and `most` are the ends of a slider, `min` and
@@ -23,7 +23,7 @@ import { layerFields } from "./completion.js";
 
 /** What a place is made of, which a hand drags. */
 const PLACE = ["x", "y", "height"];
-/** Fields that count without being written, with their defaults. */
+/** Fields that count without being written, with their defaults. @type {Fields} */
 const DEFAULTS = { angle_deg: 0, gain: 1 };
 /** Labels of fields whose names alone would be those of others. @type {Record<string, string>} */
 const LABELS = { click_ms: "click time", width_mm: "line width" };
@@ -88,17 +88,20 @@ const UNITS = [
  * @returns {LayerNumber[]}
  */
 export function layerNumbers(schema, toml, at, kind, reach) {
-  const own = (/** @type {string} */ field) => toml.value(["layer", at, field]) ?? toml.value(["defaults", field]);
-  const blend = own("blend");
+  const own = { ...DEFAULTS, ...toml.fields(at) };
+  const { blend, above } = own;
   const fields = layerFields(schema, { kind, ...(typeof blend === "string" ? { blend } : {}) });
   const isPlate = kind === "constant" && (blend ?? "replace") === "replace";
-  const isTotal = own("above") === "zero" || (isPlate && own("above") !== "natural");
-  return namesOf(toml, at, fields).flatMap((field) => {
+  const isTotal = above === "zero" || (isPlate && above !== "natural");
+  // Fields that count unwritten stay last when a hand writes them: no row moves.
+  const usual = Object.keys(own).filter((field) => !(field in DEFAULTS));
+  const names = [...usual, ...Object.keys(DEFAULTS)].filter((field) => field in fields);
+  return names.flatMap((field) => {
     const about = fields[field];
     const [ending, unit, decimals, step] = UNITS.find(([each]) => field.endsWith(each)) ?? ["", "", 2, 0.01];
     const label = field.slice(0, field.length - ending.length);
     const isPlace = PLACE.includes(label) || field.endsWith("_px") || (kind === "bitmap" && label === "width");
-    const value = own(field) ?? DEFAULTS[/** @type {keyof typeof DEFAULTS} */ (field)];
+    const value = own[field];
     const isNumber = about.type === "number" || about.type === "integer";
     if (typeof value !== "number" || !Number.isFinite(value) || isPlace || !isNumber) return [];
     const isWhole = about.type === "integer" || field === "number" || field === "seed";
@@ -134,29 +137,10 @@ export function layerNumbers(schema, toml, at, kind, reach) {
 export function layerChoices(schema, toml, at, kind) {
   const { wave } = layerFields(schema, { kind });
   if (!wave) return [];
-  const path = ["layer", at, "wave"];
   const options = wave.words.map(String);
-  const value = String(toml.value(path) ?? toml.value(["defaults", "wave"]) ?? options[0]);
+  const value = String(toml.fields(at).wave ?? options[0]);
+  const path = ["layer", at, "wave"];
   return [{ field: "wave", label: "wave", words: "shape of the pattern", value, path, options, decimals: 0 }];
-}
-
-/**
- * The fields that a hand may tune: those that the layer has, in the order of the text, then those that count unwritten.
- * @param {TomlText} toml
- * @param {number} at
- * @param {Record<string, unknown>} fields That it may have.
- */
-function namesOf(toml, at, fields) {
-  const written = Object.keys(toml.value(["layer", at]) ?? {});
-  // A field of the layer counts before a default in any unit.
-  const has = new Set(written.map(stemOf));
-  const others = [...Object.keys(toml.value(["defaults"]) ?? {}), ...Object.keys(DEFAULTS)];
-  const counting = others.filter((field) => !has.has(stemOf(field)));
-  // Those that count unwritten stay last when a hand writes them: no row moves.
-  const isUsual = (/** @type {string} */ field) => !(field in DEFAULTS);
-  return [...new Set([...[...written, ...counting].filter(isUsual), ...Object.keys(DEFAULTS)])].filter(
-    (field) => field in fields && (isUsual(field) || written.includes(field) || counting.includes(field)),
-  );
 }
 
 /**
@@ -176,14 +160,6 @@ export function repeatNumbers({ toml, at, place: { box } }, screen) {
     const whole = { decimals: 0, step: 1, least: 1, most, min: 1, max: COPIES_MAX };
     return [{ field: `repeat.${name}`, label: name, words, unit: "", value, path, ...whole }];
   });
-}
-
-/**
- * The name of a field without its unit: fields with the same stem say the same.
- * @param {string} field
- */
-function stemOf(field) {
-  return field.replace(/_(n|fraction|factor|mm|px)$/, "");
 }
 
 /**

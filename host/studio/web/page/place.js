@@ -40,18 +40,17 @@ const WHOLE_SCREEN = "This layer covers the whole screen: drag a corner inwards 
  */
 export function placeOf(toml, at, layer, screen) {
   const reader = new PlacedText(toml, at, layer, screen);
-  const copies = reader.copies();
+  const { copies } = reader;
   const box = reader.box(copies);
   const isWholeScreen = layer.boxMm === null;
-  const why = reader.whyNot();
-  const isMovable = reader.hasRegion || reader.anchors.length > 0;
+  const isMovable = reader.region || reader.anchors.length > 0;
   return {
     box,
     copies,
     isWholeScreen,
     keepsRatio: reader.keepsRatio,
-    whyNotMoved: why || (isMovable ? "" : WHOLE_SCREEN),
-    whyNotResized: why || reader.whyNotResized(),
+    whyNotMoved: isMovable ? "" : WHOLE_SCREEN,
+    whyNotResized: reader.whyNotResized(),
     move: (dxMm, dyMm) => reader.move(dxMm, dyMm, bounds(box, copies)),
     resize: (to) => reader.resize(box, to, isWholeScreen),
   };
@@ -72,15 +71,14 @@ class PlacedText extends PlaceReader {
       x: isFree ? dxMm : clamp(dxMm, -all.x, widthMm - all.x - all.width),
       y: isFree ? dyMm : clamp(dyMm, -all.y, heightMm - all.y - all.height),
     };
-    const region = this.region;
     const sides = /** @type {const} */ (["x", "y"]);
     const added = this.anchors.flatMap(({ side, length }) =>
       by[side] === 0 ? [] : [set(length, length.mm + by[side])],
     );
-    if (!region) return added;
+    if (!this.region) return added;
     const moved = this.isPolygon
-      ? this.vertices(region).flatMap((point) => point.map((each, at) => ({ ...each, side: sides[at] })))
-      : sides.map((side) => ({ .../** @type {Length} */ (this.length(region, side)), side }));
+      ? this.vertices.flatMap((point) => point.map((each, at) => ({ ...each, side: sides[at] })))
+      : sides.map((side) => ({ .../** @type {Length} */ (this.length(side)), side }));
     const changes = moved.flatMap(({ side, ...each }) => (by[side] === 0 ? [] : [set(each, each.mm + by[side])]));
     return [...this.#inOwnRegion(changes), ...added];
   }
@@ -92,14 +90,13 @@ class PlacedText extends PlaceReader {
    * @returns {Change[]}
    */
   resize(from, to, isWholeScreen) {
-    const region = this.region;
-    if (isWholeScreen && !region) {
+    if (isWholeScreen && !this.region) {
       const { x, y, width, height } = to;
       const value = { x_mm: x, y_mm: y, width_mm: width, height_mm: height };
       return [{ path: [...this.own, "region"], value, decimals: DECIMALS, after: "kind" }];
     }
-    if (region && this.isPolygon) {
-      const scaled = this.vertices(region).flatMap((point) =>
+    if (this.isPolygon) {
+      const scaled = this.vertices.flatMap((point) =>
         point.map((each, at) => {
           const side = at === 0 ? "x" : "y";
           const along = ALONG[side];
@@ -110,10 +107,10 @@ class PlacedText extends PlaceReader {
     }
     const changed = SIDES.filter((side) => to[side] !== from[side]);
     const changes = changed.flatMap((side) => {
-      const length = this.length(region, side);
+      const length = this.length(side);
       return length ? [set(length, to[side])] : [];
     });
-    return region ? this.#inOwnRegion(changes) : changes;
+    return this.region ? this.#inOwnRegion(changes) : changes;
   }
 
   /**
@@ -122,13 +119,13 @@ class PlacedText extends PlaceReader {
    * @returns {Change[]}
    */
   #inOwnRegion(changes) {
-    const region = this.region;
-    if (region?.[0] !== "defaults" || changes.length === 0) return changes;
-    const value = structuredClone(/** @type {Record<string, any>} */ (this.toml.value(region)));
+    if (this.hasOwnRegion || changes.length === 0) return changes;
+    const value = structuredClone(/** @type {Record<string, any>} */ (this.region));
+    const { length } = [...this.own, "region"];
     for (const change of changes) {
       /** @type {any} */
       let at = value;
-      for (const key of change.path.slice(region.length, -1)) at = at[key];
+      for (const key of change.path.slice(length, -1)) at = at[key];
       at[change.path[change.path.length - 1]] = change.value;
     }
     return [{ path: [...this.own, "region"], value, decimals: DECIMALS, after: "kind" }];

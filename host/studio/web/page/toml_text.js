@@ -7,7 +7,8 @@ import { stemOf } from "./dom.js";
 /** @typedef {[x: number, y: number, width: number, height: number]} BoxMm */
 /** @typedef {{ name: string, words: string, isPicture: boolean, scene: string }} Addition */
 /** @typedef {(string | number)[]} Path Keys, and numbers of an array's elements. */
-/** @typedef {number | string | boolean | null | Value[] | { [key: string]: Value }} Value */
+/** @typedef {number | string | boolean | null | Value[] | Fields} Value */
+/** @typedef {{ [key: string]: Value }} Fields */
 /**
  * A value to write, whose numbers have at most so many decimals. Where the table that it belongs to does not have it
  * yet, it goes behind the key `after`, or behind all others.
@@ -32,16 +33,20 @@ export class TomlText {
   text;
   #values;
   #lines;
+  #fields;
 
   /**
    * Throws where the text is no TOML.
    * @param {string} text
+   * @param {string} [defaults] Of its layers, as the check of the scene has them.
    */
-  constructor(text) {
-    const { values, lines } = instance.call("read_text", new TextEncoder().encode(text));
+  constructor(text, defaults = "{}") {
+    const { values, lines, fields } = instance.call("read_text", new TextEncoder().encode(`${text}\0${defaults}`));
     this.text = text;
+    this.defaults = defaults;
     this.#values = values;
     this.#lines = /** @type {number[]} */ (lines);
+    this.#fields = /** @type {Fields[]} */ (fields);
   }
 
   /**
@@ -56,6 +61,14 @@ export class TomlText {
       at = at[key];
     }
     return at;
+  }
+
+  /**
+   * The fields of a layer in the order of the text, then its defaults.
+   * @param {number} at
+   */
+  fields(at) {
+    return this.#fields[at];
   }
 
   /**
