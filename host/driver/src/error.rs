@@ -136,7 +136,10 @@ pub enum DeviceError {
         closed: LinkClosed,
     },
     /// The board's count of received bytes restarted: the board was reset, or another host connected to it.
-    #[error("the board on {port} restarted during: {command}; connect again and upload the scene again")]
+    #[error(
+        "the board on {port} restarted, or another program connected to it, during: {command}; connect again and upload the \
+         scene again"
+    )]
     Restarted {
         /// Name of the link.
         port: String,

@@ -223,13 +223,11 @@ impl Check {
             }
             Condition::State(state) => {
                 let found = states.by(end);
-                (found.map(|(_, found, _)| found) != Some(*state))
-                    .then(|| format!("{expected}; {}", said(clock, found)))
+                (found.map(|(_, found, _)| found) != Some(*state)).then(|| self.unreported(clock, end, found))
             }
             Condition::Fault(fault) => {
                 let found = states.by(end);
-                (found.and_then(|(.., found)| found) != Some(*fault))
-                    .then(|| format!("{expected}; {}", said(clock, found)))
+                (found.and_then(|(.., found)| found) != Some(*fault)).then(|| self.unreported(clock, end, found))
             }
             Condition::Error(words) => {
                 let is_it = |failure: &&mut Failure| {
@@ -251,6 +249,11 @@ impl Check {
                 ))
             }
         }
+    }
+
+    /// The sentence about a state or a fault that the board's last report until the end of the span does not have.
+    fn unreported(&self, clock: Clock, end: u64, found: Option<(u64, State, Option<Fault>)>) -> String {
+        format!("expected {} at {:.3} ms; {}", self.expected(), clock.ms(end), reported(clock, found))
     }
 
     /// The sentence about a span without a tick. On a late rig, the span is the rest of a longer one.
@@ -287,18 +290,18 @@ impl Check {
             Condition::Friction([least, largest]) => {
                 format!("an electric friction of {least} to {largest} of the largest")
             }
-            Condition::State(state) => format!("the state \"{}\" to be said", without_advice(state)),
-            Condition::Fault(fault) => format!("\"{}\" to be said", without_advice(fault)),
+            Condition::State(state) => format!("the state \"{}\"", without_advice(state)),
+            Condition::Fault(fault) => format!("\"{}\"", without_advice(fault)),
             Condition::Error(words) => format!("a failure with the words \"{}\"", brief(words)),
         }
     }
 }
 
 /// The board's last report, for a sentence.
-fn said(clock: Clock, found: Option<(u64, State, Option<Fault>)>) -> String {
-    let Some((tick, state, fault)) = found else { return "the board has said nothing".to_owned() };
+fn reported(clock: Clock, found: Option<(u64, State, Option<Fault>)>) -> String {
+    let Some((tick, state, fault)) = found else { return "the board reported none".to_owned() };
     let fault = fault.map_or_else(String::new, |fault| format!(", {}", without_advice(&fault)));
-    format!("the board has said \"{}{fault}\" at {:.3} ms", without_advice(&state), clock.ms(tick))
+    format!("the board last reported \"{}{fault}\", at {:.3} ms", without_advice(&state), clock.ms(tick))
 }
 
 /// A state or a fault without its advice.
