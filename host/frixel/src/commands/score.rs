@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::of_simulation;
 use crate::output::draw_score_svg;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
 use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all};
 use frixel_hil_sim::Board;
@@ -32,10 +32,9 @@ pub(super) struct ScoreArgs {
     #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     #[arg(allow_negative_numbers = true)]
     people: Option<u64>,
-    /// Number of human strokes, of each person.
-    #[arg(long, value_name = "N", default_value_t = TrialPlan::STROKES, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
-    #[arg(allow_negative_numbers = true)]
-    strokes: u64,
+    /// Number of human strokes, of each person. Default: 4.
+    #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX), allow_negative_numbers = true)]
+    strokes: Option<u64>,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.
     #[arg(long, value_name = "N", default_value_t = TrialPlan::SEEDS, value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     #[arg(allow_negative_numbers = true)]
@@ -101,9 +100,12 @@ fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
         Some(generated) => generated.into(),
         None => TrialStroke::Own(stroke::from_file(Path::new(&args.stroke))?),
     };
+    if let (Some(found), false) = (args.strokes, stroke.is_of_people()) {
+        bail!("--strokes {found} counts human strokes, and there is one of {}: leave --strokes out", args.stroke);
+    }
     Ok(TrialPlan {
         stroke,
-        strokes: args.strokes,
+        strokes: args.strokes.unwrap_or(TrialPlan::STROKES),
         seeds: args.seeds,
         seconds: args.seconds,
         median_speed_m_per_s: args.median_speed_mm_per_s.map(|speed_mm_per_s| 1e-3 * speed_mm_per_s),

@@ -27,6 +27,13 @@ pub enum TrialStroke {
     Own(Stroke),
 }
 
+impl TrialStroke {
+    /// Whether it is made like a person's, with another one for each number.
+    pub fn is_of_people(&self) -> bool {
+        matches!(self, Self::Generated(stroke) if stroke.is_of_people())
+    }
+}
+
 impl From<GeneratedStroke> for TrialStroke {
     fn from(stroke: GeneratedStroke) -> Self {
         Self::Generated(stroke)
@@ -117,7 +124,7 @@ impl TrialPlan {
     }
 
     fn check(&self, people: u64) -> Result<(), TrialsError> {
-        let is_of_people = matches!(self.stroke, TrialStroke::Generated(stroke) if stroke.is_of_people());
+        let is_of_people = self.stroke.is_of_people();
         if !is_of_people && self.median_speed_m_per_s.is_some() {
             return Err(TrialsError::SpeedOfPeople);
         }
