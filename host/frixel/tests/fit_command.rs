@@ -72,7 +72,15 @@ fn a_calibrated_person_is_recovered() {
 
     let text = fs::read_to_string(folder.path().join("finger.toml")).unwrap();
     let profile = FingerProfile::parse(&text, "finger.toml").unwrap();
-    assert!(matches!(profile.evidence, Evidence::Measured { voltage_max_v_rms, .. } if voltage_max_v_rms > 149.0));
+    // Nothing was measured, whatever the recording looks like.
+    assert_eq!(profile.evidence, Evidence::Assumed);
+    let data = fs::read_to_string(folder.path().join("data.csv")).unwrap().replace(",assumed\n", ",\n");
+    fs::write(folder.path().join("measured.csv"), data).unwrap();
+    succeed(folder.path(), &["finger", "fit", "measured.csv", "-o", "finger.toml"]);
+    let text = fs::read_to_string(folder.path().join("finger.toml")).unwrap();
+    let measured = FingerProfile::parse(&text, "finger.toml").unwrap();
+    assert!(matches!(measured.evidence, Evidence::Measured { voltage_max_v_rms, .. } if voltage_max_v_rms > 149.0));
+    assert_eq!(FingerProfile { evidence: Evidence::Assumed, ..measured }, profile);
     assert!(fs::read_to_string(folder.path().join("finger.svg")).unwrap().contains("contact model, fitted"));
 
     // The same file in words, from standard columns in another order, without the stroke column.

@@ -125,6 +125,16 @@ fn fed(folder: &Path, line: &str, input: &[u8]) {
     assert!(ended.status.success(), "{line}: {}", String::from_utf8_lossy(&ended.stderr));
 }
 
+#[test]
+fn bytes_behind_the_rows_of_a_recording_are_noticed() {
+    let folder = folder();
+    succeed(folder.path(), &["play", "scene.toml", "--seconds", "0.3", "--record", "a.parquet"]);
+    let bytes = fs::read(folder.path().join("a.parquet")).unwrap();
+    fs::write(folder.path().join("b.parquet"), [bytes.as_slice(), b"more"].concat()).unwrap();
+    let said = refused(folder.path(), "b.parquet");
+    assert!(said.contains("play the same bits, and the bytes behind them are no rows"), "{said}");
+}
+
 /// Asserts that the recording `a.parquet` of a folder is played again from this file alone.
 fn assert_played_again(folder: &Path, what: &str) {
     let elsewhere = TempDir::new().unwrap();

@@ -30,6 +30,7 @@ fn strokes(seed: u64, count: usize) -> Vec<Row> {
                 time_s: Some(3.0 * stroke as f64 + 1e-3 * f64::from(index)),
                 stroke: Some(stroke.to_string()),
                 speed_mm_s: Some(60.0),
+                is_simulated: false,
             });
         }
     }

@@ -186,6 +186,7 @@ impl Person {
                     time_s: Some(time_s),
                     stroke: Some((stroke + 1).to_string()),
                     speed_mm_s: Some(speed_mm_s),
+                    is_simulated: false,
                 });
                 time_s += 1.0 / SAMPLE_HZ;
             }

@@ -76,6 +76,7 @@ pub(super) fn record(person: &Person, protocol: &Protocol, seed: u64) -> Vec<Row
                 time_s: Some(time_s),
                 stroke: Some((stroke + 1).to_string()),
                 speed_mm_s: Some(1e3 * speed_m_per_s),
+                is_simulated: false,
             });
             time_s += 1e-3;
         }

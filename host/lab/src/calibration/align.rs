@@ -179,6 +179,7 @@ fn joined(board: &[BoardRow], forces: &[ForceRow], offset_s: f64) -> Vec<Row> {
                 time_s: Some(time_s),
                 stroke: Some(stroke.to_string()),
                 speed_mm_s: Some(seen.speed_mm_s),
+                is_simulated: false,
             });
         }
     }

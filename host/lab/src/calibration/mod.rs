@@ -12,6 +12,7 @@ mod simulated_finger;
 use std::fmt::Write as _;
 use std::io::{self, Read, Write};
 
+use frixel_scene::Origin;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -102,6 +103,8 @@ struct Written<'r> {
     normal_force_n: f64,
     friction_n: f64,
     speed_mm_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finger_origin: Option<&'static str>,
 }
 
 /// Writes the board's reports as CSV, which [`read_board`] reads: the column names, or rows to append.
@@ -137,7 +140,7 @@ fn board_rows(input: impl Read) -> Result<Vec<BoardRow>, TableError> {
     Ok(rows)
 }
 
-/// Writes a recording as CSV.
+/// Writes a recording as CSV; of a simulated finger, with a column that says so.
 pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationError> {
     let mut writer = csv::Writer::from_writer(output);
     for row in rows {
@@ -148,6 +151,7 @@ pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationErro
             normal_force_n: rounded(row.normal_force_n, 1e-6),
             friction_n: rounded(row.friction_n, 1e-6),
             speed_mm_s: rounded(row.speed_mm_s.unwrap_or_default(), 1e-3),
+            finger_origin: row.is_simulated.then(|| Origin::Assumed.word()),
         };
         writer.serialize(written).map_err(CalibrationError::Write)?;
     }

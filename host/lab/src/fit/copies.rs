@@ -144,7 +144,16 @@ mod tests {
             }
             let [normal_force_n, friction_n] = measured_n;
             let (number, time_s) = (index as u64 + 2, Some(1e-3 * index as f64));
-            Row { number, voltage_v_rms, normal_force_n, friction_n, time_s, stroke: None, speed_mm_s: None }
+            Row {
+                number,
+                voltage_v_rms,
+                normal_force_n,
+                friction_n,
+                time_s,
+                stroke: None,
+                speed_mm_s: None,
+                is_simulated: false,
+            }
         };
         (0..count).map(&mut row).collect()
     }

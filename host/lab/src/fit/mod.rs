@@ -67,7 +67,7 @@ use recording::Recording;
 pub(crate) use rules::FORCE_MAX_N;
 use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::words;
-pub(crate) use table::COLUMNS;
+pub(crate) use table::{COLUMNS, ORIGIN};
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
 pub use zero::SensorZero;
@@ -171,6 +171,7 @@ impl FittedData {
 
     fn of_recording(rows: Vec<Row>, settings: &Settings, goes_on: GoesOn<'_>) -> Result<Self, FitError> {
         table::check_numbers(&rows)?;
+        let is_simulated = rows.iter().any(|row| row.is_simulated);
         let (rows, rows_without_time) = recording::with_times(rows)?;
         let (rows, sensor_zero) = zero::taken_from(rows);
         let mut faults = Faults::default();
@@ -182,7 +183,7 @@ impl FittedData {
             faults.refuse()?;
         }
         let mut fitted = fitted?;
-        fitted.data.preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time };
+        fitted.data.preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time, is_simulated };
         Ok(fitted)
     }
 

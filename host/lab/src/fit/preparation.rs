@@ -13,6 +13,8 @@ pub struct Preparation {
     pub sensor_zero: Option<SensorZero>,
     /// Number of rows that were left out because they have no time although others do.
     pub rows_without_time: usize,
+    /// Whether the finger is simulated: the profile is assumed.
+    pub is_simulated: bool,
 }
 
 impl Preparation {
@@ -23,6 +25,7 @@ impl Preparation {
         }
         let note = |faulty: &FaultyStroke| format!("stroke {} left out: {}", brief(&faulty.stroke), faulty.fault);
         let mut notes: Vec<String> = self.left_out.iter().map(note).collect();
+        notes.extend(self.is_simulated.then(|| "the finger is simulated: nothing was measured".to_owned()));
         notes.extend(match self.rows_without_time {
             0 => None,
             1 => Some("1 row without a time left out".to_owned()),

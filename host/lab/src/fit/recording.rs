@@ -281,6 +281,7 @@ mod tests {
                 time_s: Some(start_s + 1e-3 * index as f64),
                 stroke: None,
                 speed_mm_s,
+                is_simulated: false,
             });
         }
     }

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::io::Read;
 
+use frixel_scene::Origin;
+
 use super::error::{FitError, plain};
 use super::means::{self, MeanRow};
 use crate::table::{Column, Place, Reading, Table, Unit, not_a_number};
@@ -15,6 +17,8 @@ pub(super) const LOAD: Column = Column::new("normal_force_n", "newtons").convert
 pub(super) const FRICTION: Column = Column::new("friction_n", "newtons").converted(Unit::NEWTONS);
 pub(super) const TIME: Column = Column::new("time_s", "seconds").converted(Unit::SECONDS);
 pub(super) const STROKE: Column = Column::new("stroke", "");
+/// The kind of evidence, as in a profile's `origin`.
+pub(crate) const ORIGIN: Column = Column::new("finger_origin", "");
 pub(super) const SPEED: Column = Column::new("speed_mm_s", "mm/s").converted(Unit::MILLIMETRES_PER_SECOND);
 
 /// The columns that a recording needs.
@@ -37,6 +41,8 @@ pub struct Row {
     pub stroke: Option<String>,
     /// Speed in mm/s; its sign may say the direction.
     pub speed_mm_s: Option<f64>,
+    /// Whether the finger is simulated: `finger_origin` is `assumed`.
+    pub is_simulated: bool,
 }
 
 /// The contents of a table for a fit.
@@ -60,9 +66,9 @@ pub fn data(input: impl Read) -> Result<Reading<Data>, FitError> {
     Ok(Reading { value: Data::Recording(value), understood })
 }
 
-/// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`
-/// and `speed_mm_s` are read if there are such columns, and their empty cells and `nan` are unknown; others are
-/// ignored. Columns stand in any order, and may state another unit ([`table`](crate::table)).
+/// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`,
+/// `speed_mm_s` and `finger_origin` are read if there are such columns, and their empty cells and `nan` are unknown;
+/// others are ignored. Columns stand in any order, and may state another unit ([`table`](crate::table)).
 pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     recording(Table::new(input)?)
 }
@@ -70,6 +76,7 @@ pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
 fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError> {
     let (voltage, load, friction) = (table.need(VOLTAGE)?, table.need(LOAD)?, table.need(FRICTION)?);
     let (time, stroke, speed) = (table.find(TIME)?, table.find(STROKE)?, table.find(SPEED)?);
+    let origin = table.find(ORIGIN)?;
     let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         row.check_length()?;
@@ -82,6 +89,9 @@ fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError
             time_s: real_if_known(time)?.flatten(),
             stroke: stroke.and_then(|stroke| row.known(stroke)).map(Cow::into_owned),
             speed_mm_s: real_if_known(speed)?.flatten(),
+            is_simulated: origin
+                .and_then(|origin| row.known(origin))
+                .is_some_and(|word| word == Origin::Assumed.word()),
         });
     }
     check_numbers(&rows)?;

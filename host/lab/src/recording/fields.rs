@@ -167,7 +167,7 @@ pub fn stroke_fields() -> Vec<Field> {
 }
 
 /// The columns of a calibration.
-pub fn calibration_fields() -> Vec<Field> {
+pub fn calibration_fields(is_simulated: bool) -> Vec<Field> {
     let fields = [
         ("time_s", "s", "time on the board's clock", Kind::Number),
         ("stroke", "", "name of the stroke", Kind::Text),
@@ -175,8 +175,9 @@ pub fn calibration_fields() -> Vec<Field> {
         ("normal_force_n", "N", "force of the finger on the screen", Kind::Number),
         ("friction_n", "N", "friction that the sensor measured", Kind::Number),
         ("speed_mm_s", "mm/s", "the finger's sliding speed", Kind::Number),
+        ("finger_origin", "", "evidence for the forces: `assumed` of a simulated finger", Kind::Text),
     ];
-    fields.map(Field::of).into()
+    fields.into_iter().filter(|(name, ..)| is_simulated || *name != "finger_origin").map(Field::of).collect()
 }
 
 /// The columns of a play.

@@ -37,11 +37,12 @@ pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     Ok(text.lines().any(is_perceptual) || (text.starts_with('{') && text.contains(OF_A_PERSON)))
 }
 
-/// Whether the table has the columns of friction, or those of a stroke and at most the column of a person's play.
+/// Whether the table has the columns of friction without an origin, which only a simulated finger's has, or those of a
+/// stroke and at most the column of a person's play.
 fn is_table_of_person(head: &[u8]) -> Result<bool, TableError> {
     let mut table = Table::new(head)?;
     if has_all(&mut table, fit::COLUMNS)? {
-        return Ok(true);
+        return Ok(table.find(fit::ORIGIN)?.is_none());
     }
     let is_of_play = table.names().iter().any(|name| name == PARTICIPANT);
     let is_stroke = has_all(&mut table, stroke_file::COLUMNS)?;

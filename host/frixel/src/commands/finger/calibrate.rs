@@ -104,15 +104,18 @@ fn write(
     (board, forces): &Recorded,
     hello: Option<&Hello>,
 ) -> Result<()> {
-    let rows = align(board, forces)?;
+    // Only a board's recording can be cut off: the simulator's file is written at the end.
+    let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
+    let mut rows = align(board, forces)?;
+    for row in &mut rows {
+        row.is_simulated = is_simulated;
+    }
     let mut bytes = Vec::new();
     write_csv(&mut bytes, &rows)?;
     if parquet::is_parquet(&args.output) {
-        // Only a board's recording can be cut off: the simulator's file is written at the end.
-        let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
         let rig = if hello.is_none() && is_simulated { "sim" } else { "board" };
         let metadata = Metadata::new(rig, hello, is_simulated, args.participant.as_deref());
-        parquet::write(recording, &bytes, calibration_fields(), metadata)?;
+        parquet::write(recording, &bytes, calibration_fields(is_simulated), metadata)?;
     } else {
         recording.write(&bytes)?;
     }

@@ -10,7 +10,7 @@ use anyhow::{Result, anyhow, bail};
 use chrono::Utc;
 use clap::{Args, ValueEnum};
 use frixel_files::{Inputs, OutputFile, commit_all};
-use frixel_lab::fit::{self, Division, EmpiricalFit, Fit, Settings};
+use frixel_lab::fit::{self, DataSummary, Division, EmpiricalFit, Fit, Settings};
 use frixel_lab::table::Reading;
 use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile};
@@ -102,10 +102,10 @@ impl Fitted {
         }
     }
 
-    fn division(&self) -> Division {
+    fn data(&self) -> &DataSummary {
         match self {
-            Self::Contact(fit) => fit.data.division,
-            Self::Empirical(fit) => fit.data.division,
+            Self::Contact(fit) => &fit.data,
+            Self::Empirical(fit) => &fit.data,
         }
     }
 }
@@ -176,7 +176,8 @@ impl Outputs {
     }
 
     fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<()> {
-        let method = args.method.clone().unwrap_or_else(|| method_of(fit.division()).to_owned());
+        let simulated = if fit.data().preparation.is_simulated { "simulated " } else { "" };
+        let method = args.method.clone().unwrap_or_else(|| format!("{simulated}{}", method_of(fit.data().division)));
         let date = Utc::now().date_naive().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
         let mut written = vec![self.profile.filled(fit.profile(experiment).to_toml().as_bytes())?];

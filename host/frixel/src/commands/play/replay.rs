@@ -11,7 +11,6 @@ use crate::commands::error::{at, reading};
 use crate::input;
 
 use super::super::terminal::{note_interrupted, print_line};
-use super::note;
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct ReplayArgs {
@@ -25,9 +24,6 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
     note_interrupted(path, &bytes);
     let recorded = Recording::read_parquet(bytes).map_err(at(path.display()))?;
-    if recorded.is_cut_off {
-        note(format_args!("{}: the last row group is incomplete, and is left out", path.display()));
-    }
     let played = recorded.replay(TO_THE_END);
     let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
     if let Some(difference) = recorded.first_difference(&played) {
@@ -37,5 +33,12 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
         );
     }
     let (rows, columns) = (recorded.rows(), recorded.columns.len());
+    if recorded.is_cut_off {
+        bail!(
+            "{}: its first {rows} rows play the same bits, and the bytes behind them are no rows: the file was changed, or \
+             its last write was cut off",
+            path.display()
+        );
+    }
     print_line(format_args!("{}: the same bits, {rows} rows of {columns} columns", path.display()))
 }
