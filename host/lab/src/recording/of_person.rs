@@ -2,6 +2,8 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
+use frixel_scene::Origin;
+
 use super::claims::FOOTER_MAX_BYTES;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
 use crate::table::{Column, Table, TableError};
@@ -37,12 +39,15 @@ pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     Ok(text.lines().any(is_perceptual) || (text.starts_with('{') && text.contains(OF_A_PERSON)))
 }
 
-/// Whether the table has the columns of friction without an origin, which only a simulated finger's has, or those of a
+/// Whether the table has the columns of friction, unless its first row says that the finger is simulated, or those of a
 /// stroke and at most the column of a person's play.
 fn is_table_of_person(head: &[u8]) -> Result<bool, TableError> {
     let mut table = Table::new(head)?;
     if has_all(&mut table, fit::COLUMNS)? {
-        return Ok(table.find(fit::ORIGIN)?.is_none());
+        let Some(origin) = table.find(fit::ORIGIN)? else { return Ok(true) };
+        let first = table.next_row().ok().flatten();
+        let is_simulated = first.and_then(|row| row.known(origin)).is_some_and(|word| word == Origin::Assumed.word());
+        return Ok(!is_simulated);
     }
     let is_of_play = table.names().iter().any(|name| name == PARTICIPANT);
     let is_stroke = has_all(&mut table, stroke_file::COLUMNS)?;

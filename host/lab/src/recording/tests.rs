@@ -186,6 +186,7 @@ fn a_recording_of_a_person_is_known_by_its_content() {
         ("\u{feff}\"t_s\";\"x_mm\";\"y_mm\"\r\n0,0;1,0;2,0\r\n", "as a spreadsheet saves it"),
         ("time_s,stroke,voltage_v_rms,normal_force_n,friction_n\n", "friction"),
         ("Sensor 7\nvoltage_v_rms\tnormal_force_n\tFriction [mN]\n0\t0.5\t250\n", "as an instrument writes it"),
+        ("voltage_v_rms,normal_force_n,friction_n,finger_origin\n9,0.5,0.2,measured\n", "friction of known origin"),
         ("t_s,x_cm,y_cm\n0,1,2\n", "a stroke in centimetres"),
         ("t_s,x_mm,y_mm,speed_mm_s,felt_n,flags,participant\n", "a play of a person"),
         ("{\"rig\":\"board\",\"simulated\":false}\n", "its summary"),
@@ -193,7 +194,11 @@ fn a_recording_of_a_person_is_known_by_its_content() {
     ] {
         assert!(is_known(text.as_bytes()), "{what}");
     }
-    let simulated = ["t_s,x_mm,y_mm,speed_mm_s,felt_n,flags\n", "{\"rig\":\"sim\",\"simulated\":true}\n"];
+    let simulated = [
+        "t_s,x_mm,y_mm,speed_mm_s,felt_n,flags\n",
+        "{\"rig\":\"sim\",\"simulated\":true}\n",
+        "voltage_v_rms,normal_force_n,friction_n,finger_origin\n9,0.5,0.2,assumed\n",
+    ];
     for text in simulated.into_iter().chain(["PAR1", "PAR1\u{7f}\u{7f}\u{7f}\u{7f}PAR1", ""]) {
         assert!(!is_known(text.as_bytes()), "{text}");
     }
