@@ -108,7 +108,7 @@ impl Files for GalleryFiles {
     }
 }
 
-/// The scenes of [`scene_files`] without pictures, compiled, each with the name of its file.
+/// The scenes of the repository without pictures, compiled, each with the name of its file.
 pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
     let board = RigConfig::default().board;
     let programs = scene_files().into_iter().map(|file| {

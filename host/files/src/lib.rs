@@ -4,7 +4,7 @@
 //! | what is written | method | where, until it is whole |
 //! |---|---|---|
 //! | a result, which can be computed again | [`OutputFile::create`] | a hidden file beside it, removed on failure |
-//! | a recording of a person | [`OutputFile::record`] | `FILE.partial`, in whole rows, kept on failure |
+//! | a recording of a person | [`OutputFile::begin_recording`] | `FILE.partial`, in whole rows, kept on failure |
 //! | lines to which a later process adds | [`OutputFile::append`] | under its own name, in whole lines |
 //! | a log that others read while it grows | [`OutputFile::create_live`] | under its own name, in whole rows |
 //!

@@ -29,7 +29,7 @@ SHORT_SETTINGS: dict[str, Any] = {"strokes": 1, "seeds": 1, "seconds": 0.5}
         (["--strokes", "2", "--seeds", "2", "--seconds", "0.5"], {"strokes": 2, "seeds": 2, "seconds": 0.5}),
         ([*SHORT, "--stroke", "human-rough", "--touch", "500"], {"stroke": "human-rough", "touch": "500"}),
         (
-            [*SHORT, "--stroke", "sweep", "--ideal", "--finger", "dry"],
+            [*SHORT[2:], "--stroke", "sweep", "--ideal", "--finger", "dry"],
             {"stroke": "sweep", "ideal": True, "finger": "dry"},
         ),
         (

@@ -197,7 +197,8 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
     values = {"layer.1.high_n": [40]}
     with pytest.raises(SceneError, match="40"):
         sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1, "parameters": values})
-    values = {"layer.1.region.width_mm": [10, 80], "layer.1.region.x_mm": [20, 100]}
+    place: dict[str, list[int]] = {"x_mm": [20, 100], "y_mm": [10], "width_mm": [10, 80], "height_mm": [10]}
+    values = {f"layer.1.region.{field}": numbers for field, numbers in place.items()}
     *_, last = sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1, "parameters": values})
     with pytest.raises(SceneError, match="past the right edge"):
         sweep.play(last)
