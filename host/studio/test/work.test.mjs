@@ -19,7 +19,7 @@ test("a reload brings back the scene, its name and its finger", async () => {
   await page.selectOption("#finger", "dry");
   await page.reload();
   await plays(page);
-  assert.equal(await options.innerText(), "Options: dry");
+  await options.filter({ hasText: "Options: dry" }).waitFor();
   assert.equal(await page.evaluate(() => studioPage.editor.text), WHOLE_SCREEN_GRATING);
   assert.equal(await page.inputValue("#scene-name"), "ridges");
   assert.equal(await page.inputValue("#finger"), "dry");
