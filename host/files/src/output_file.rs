@@ -154,11 +154,16 @@ impl OutputFile {
         self.create()?.live()
     }
 
-    /// Opens a file of lines, to which this process alone appends, and calls `each` with those that are there. Waits
-    /// until no other process appends. The part of a line that a killed process left is removed.
+    /// Opens a file of lines for appending, and calls `each` with every line in it. Waits while another process appends.
+    /// Removes the partial last line that a killed process left.
     pub fn append(&self, each: impl FnMut(&[u8])) -> Result<FileWriter, Error> {
+        self.append_waiting(each, pause)
+    }
+
+    /// [`Self::append`], with `wait` between tries.
+    pub(crate) fn append_waiting(&self, each: impl FnMut(&[u8]), wait: impl FnMut()) -> Result<FileWriter, Error> {
         let Some(file) = &self.file else { return self.create() };
-        let mut lines = when_free(|| NewFile::open(&self.path, file, file))?;
+        let mut lines = when_free(|| NewFile::open(&self.path, file, file), wait)?;
         lines.stay(each).map_err(writing(&self.path))?;
         Ok(FileWriter::new(&self.path, Sink::File(lines)))
     }
@@ -171,7 +176,7 @@ impl OutputFile {
     /// Writes the whole file, which other processes may write at the same moment with the same content.
     pub fn write_shared(&self, bytes: &[u8]) -> Result<(), Error> {
         let is_there = || read(&self.path, bytes.len() as u64).is_ok_and(|there| there == bytes);
-        when_free(|| if is_there() { Ok(()) } else { self.write(bytes) })
+        when_free(|| if is_there() { Ok(()) } else { self.write(bytes) }, pause)
     }
 
     /// Like [`Self::write`], without the commit.
@@ -190,14 +195,18 @@ impl OutputFile {
     }
 }
 
-/// Tries until no other process has the file.
-fn when_free<T>(open: impl Fn() -> Result<T, Error>) -> Result<T, Error> {
+/// Tries until no other process has the file, with `wait` between tries.
+fn when_free<T>(open: impl Fn() -> Result<T, Error>, mut wait: impl FnMut()) -> Result<T, Error> {
     loop {
         match open() {
-            Err(Error::Busy(_)) => thread::sleep(BUSY_PERIOD),
+            Err(Error::Busy(_)) => wait(),
             opened => return opened,
         }
     }
+}
+
+fn pause() {
+    thread::sleep(BUSY_PERIOD);
 }
 
 /// Path of a result that is not complete.

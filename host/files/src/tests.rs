@@ -48,26 +48,26 @@ fn recording(path: &Path, overwrites: bool) -> OutputFile {
 fn lines_are_appended_behind_the_whole_ones() {
     let folder = Folder::new();
     let output = folder.output("lines", "one\ntwo\nthr");
-    let append = || {
+    let append = |wait: &mut dyn FnMut()| {
         let mut there = Vec::new();
-        let writer = output.append(|line| there.push(String::from_utf8_lossy(line).into_owned())).unwrap();
+        let each = |line: &[u8]| there.push(String::from_utf8_lossy(line).into_owned());
+        let writer = output.append_waiting(each, wait).unwrap();
         (writer, there)
     };
-    let (mut writer, there) = append();
+    let (mut writer, there) = append(&mut || panic!("no other process has it"));
     assert_eq!(there, ["one", "two"]);
     assert_eq!(folder.text("lines").as_deref(), Some("one\ntwo\n"), "no line is cut off");
     writeln!(writer, "three").unwrap();
     writer.flush().unwrap();
     assert_eq!(folder.text("lines").as_deref(), Some("one\ntwo\nthree\n"), "as a killed process leaves it");
     // Another process waits, and then has the lines of this one.
-    let there = std::thread::scope(|scope| {
-        let other = scope.spawn(|| append().1);
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        assert!(!other.is_finished());
+    let mut holder = Some(writer);
+    let (_, there) = append(&mut || {
+        let mut writer = holder.take().expect("it waits once");
         writeln!(writer, "four").unwrap();
         writer.commit().unwrap();
-        other.join().unwrap()
     });
+    assert!(holder.is_none());
     assert_eq!((there.len(), folder.count()), (4, 1));
     assert!(folder.output("new", "").append(|_| panic!("there is no line")).is_ok());
 }
