@@ -32,7 +32,7 @@ pub(super) struct ScoreArgs {
     #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX))]
     #[arg(allow_negative_numbers = true)]
     people: Option<u64>,
-    /// Number of human strokes, of each person. Default: 4.
+    #[arg(help = format!("Number of human strokes, of each person [default: {}]", TrialPlan::STROKES))]
     #[arg(long, value_name = "N", value_parser = whole(1..=TrialPlan::COUNT_MAX), allow_negative_numbers = true)]
     strokes: Option<u64>,
     /// Repetitions of each stroke, each with other loads, noise and lost reports.

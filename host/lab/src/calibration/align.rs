@@ -32,10 +32,11 @@ pub struct BoardRow {
     pub speed_mm_s: f64,
 }
 
-/// Joins the board's rows with the forces of a sensor whose clock began at another time, and numbers the strokes.
+/// Joins the board's rows with the forces of a sensor whose clock began at another time, and numbers the strokes. If
+/// the finger is simulated, each row says so.
 ///
 /// Fails if friction does not follow the drive, or if the two clocks drift apart by more than 1 ms.
-pub fn align(board: &[BoardRow], forces: &[ForceRow]) -> Result<Vec<Row>, CalibrationError> {
+pub fn align(board: &[BoardRow], forces: &[ForceRow], is_simulated: bool) -> Result<Vec<Row>, CalibrationError> {
     let duration_s = |first: Option<f64>, last: Option<f64>| first.zip(last).map_or(0.0, |(first, last)| last - first);
     let found = duration_s(forces.first().map(|row| row.time_s), forces.last().map(|row| row.time_s));
     let needed = duration_s(board.first().map(|row| row.time_s), board.last().map(|row| row.time_s));
@@ -83,7 +84,7 @@ pub fn align(board: &[BoardRow], forces: &[ForceRow]) -> Result<Vec<Row>, Calibr
     }
     let lag_s = refined(&drive, &answer, lag) / GRID_HZ;
     let starts = (board.first().map_or(0.0, |row| row.time_s), forces.first().map_or(0.0, |row| row.time_s));
-    Ok(joined(board, forces, starts.1 + lag_s - starts.0))
+    Ok(joined(board, forces, starts.1 + lag_s - starts.0, is_simulated))
 }
 
 /// Values on a grid of [`GRID_HZ`] from the first row on, the last row before each point.
@@ -152,7 +153,7 @@ fn refined(drive: &[f64], answer: &[f64], lag: i64) -> f64 {
 }
 
 /// One row for each force, with what the board reported at that time. The sensor's time is ahead by `offset_s`.
-fn joined(board: &[BoardRow], forces: &[ForceRow], offset_s: f64) -> Vec<Row> {
+fn joined(board: &[BoardRow], forces: &[ForceRow], offset_s: f64, is_simulated: bool) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     let mut stroke = 0_u32;
     let mut stroke_start = 0;
@@ -179,7 +180,7 @@ fn joined(board: &[BoardRow], forces: &[ForceRow], offset_s: f64) -> Vec<Row> {
                 time_s: Some(time_s),
                 stroke: Some(stroke.to_string()),
                 speed_mm_s: Some(seen.speed_mm_s),
-                is_simulated: false,
+                is_simulated,
             });
         }
     }
@@ -203,7 +204,7 @@ mod tests {
     use super::{BoardRow, ForceRow, align};
 
     fn refused(board: &[BoardRow], forces: &[ForceRow]) -> String {
-        align(board, forces).unwrap_err().to_string()
+        align(board, forces, false).unwrap_err().to_string()
     }
 
     /// A board that drives random half-periods, and a sensor whose clock is `offset_s` ahead and `rate` times as fast.
@@ -232,7 +233,7 @@ mod tests {
     fn clocks_that_began_at_other_times_are_aligned() {
         for offset_s in [0.0, 1234.5678, -7.25] {
             let (board, forces) = recorded(offset_s, 1.0);
-            let rows = align(&board, &forces).unwrap();
+            let rows = align(&board, &forces, false).unwrap();
             let wrong = rows.iter().filter(|row| (row.voltage_v_rms > 0.0) != (row.friction_n > 0.2501)).count();
             assert!(wrong * 25 < rows.len(), "{offset_s}: {wrong} of {}", rows.len());
         }
@@ -243,7 +244,7 @@ mod tests {
         let (board, forces) = recorded(5.0, 1.0 + 2e-4);
         assert!(refused(&board, &forces).contains("drift apart by "), "{}", refused(&board, &forces));
         let (board, forces) = recorded(5.0, 1.0 + 1e-5);
-        assert!(align(&board, &forces).is_ok());
+        assert!(align(&board, &forces, false).is_ok());
     }
 
     #[test]

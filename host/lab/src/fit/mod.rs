@@ -67,7 +67,7 @@ use recording::Recording;
 pub(crate) use rules::FORCE_MAX_N;
 use search::{Replicate, Search, attraction_of, coupling_of, start};
 pub use summary::words;
-pub(crate) use table::{COLUMNS, ORIGIN};
+pub(crate) use table::{COLUMNS, ORIGIN, is_simulated};
 pub use table::{Data, Row, data, rows};
 pub use verdict::{Exponent, Verdict};
 pub use zero::SensorZero;

@@ -7,7 +7,7 @@ use frixel_scene::Origin;
 
 use super::error::{FitError, plain};
 use super::means::{self, MeanRow};
-use crate::table::{Column, Place, Reading, Table, Unit, not_a_number};
+use crate::table::{Column, Place, Reading, Row as TableRow, Table, Unit, not_a_number};
 
 /// Highest voltage that is read, in volts rms: above what any amplifier for touchscreens has.
 const VOLTAGE_MAX_V_RMS: f64 = 1000.0;
@@ -66,11 +66,16 @@ pub fn data(input: impl Read) -> Result<Reading<Data>, FitError> {
     Ok(Reading { value: Data::Recording(value), understood })
 }
 
-/// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed; `time_s`, `stroke`,
-/// `speed_mm_s` and `finger_origin` are read if there are such columns, and their empty cells and `nan` are unknown;
-/// others are ignored. Columns stand in any order, and may state another unit ([`table`](crate::table)).
+/// Reads rows from CSV with a header. `voltage_v_rms`, `normal_force_n` and `friction_n` are needed. `time_s`,
+/// `stroke`, `speed_mm_s` and `finger_origin` are optional, and their empty cells and `nan` are unknown; other columns
+/// are ignored. Columns stand in any order, and may state another unit ([`table`](crate::table)).
 pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     recording(Table::new(input)?)
+}
+
+/// Whether a row says, in its column [`ORIGIN`], that the finger is simulated.
+pub(crate) fn is_simulated(row: &TableRow<'_>, origin: Option<Place>) -> bool {
+    origin.and_then(|origin| row.known(origin)).is_some_and(|word| word == Origin::Assumed.word())
 }
 
 fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError> {
@@ -89,9 +94,7 @@ fn recording<R: Read>(mut table: Table<R>) -> Result<Reading<Vec<Row>>, FitError
             time_s: real_if_known(time)?.flatten(),
             stroke: stroke.and_then(|stroke| row.known(stroke)).map(Cow::into_owned),
             speed_mm_s: real_if_known(speed)?.flatten(),
-            is_simulated: origin
-                .and_then(|origin| row.known(origin))
-                .is_some_and(|word| word == Origin::Assumed.word()),
+            is_simulated: is_simulated(&row, origin),
         });
     }
     check_numbers(&rows)?;

@@ -3,6 +3,8 @@
 use frixel_felt::recorder::{FeltRow, FlagNames};
 use serde::{Deserialize, Serialize};
 
+use crate::fit::ORIGIN;
+
 /// Name, unit and meaning of a column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Field {
@@ -175,9 +177,9 @@ pub fn calibration_fields(is_simulated: bool) -> Vec<Field> {
         ("normal_force_n", "N", "force of the finger on the screen", Kind::Number),
         ("friction_n", "N", "friction that the sensor measured", Kind::Number),
         ("speed_mm_s", "mm/s", "the finger's sliding speed", Kind::Number),
-        ("finger_origin", "", "evidence for the forces: `assumed` of a simulated finger", Kind::Text),
+        (ORIGIN.name, "", "evidence for the forces: `assumed` of a simulated finger", Kind::Text),
     ];
-    fields.into_iter().filter(|(name, ..)| is_simulated || *name != "finger_origin").map(Field::of).collect()
+    fields.into_iter().filter(|(name, ..)| is_simulated || *name != ORIGIN.name).map(Field::of).collect()
 }
 
 /// The columns of a play.

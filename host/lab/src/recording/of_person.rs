@@ -2,8 +2,6 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-use frixel_scene::Origin;
-
 use super::claims::FOOTER_MAX_BYTES;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
 use crate::table::{Column, Table, TableError};
@@ -44,10 +42,9 @@ pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
 fn is_table_of_person(head: &[u8]) -> Result<bool, TableError> {
     let mut table = Table::new(head)?;
     if has_all(&mut table, fit::COLUMNS)? {
-        let Some(origin) = table.find(fit::ORIGIN)? else { return Ok(true) };
+        let origin = table.find(fit::ORIGIN)?;
         let first = table.next_row().ok().flatten();
-        let is_simulated = first.and_then(|row| row.known(origin)).is_some_and(|word| word == Origin::Assumed.word());
-        return Ok(!is_simulated);
+        return Ok(!first.is_some_and(|row| fit::is_simulated(&row, origin)));
     }
     let is_of_play = table.names().iter().any(|name| name == PARTICIPANT);
     let is_stroke = has_all(&mut table, stroke_file::COLUMNS)?;

@@ -279,10 +279,11 @@ impl Plan {
         sample(self.touch.len(), 1);
         sample(self.screens.len().max(1), 1);
         for values in self.parameters.values().rev() {
-            sample(
-                values.len(),
-                if matches!(values, Values::Range(_)) { values.len().saturating_sub(1).max(1) } else { 1 },
-            );
+            let step = match values {
+                Values::List(_) => 1,
+                Values::Range(_) => values.len().saturating_sub(1).max(1),
+            };
+            sample(values.len(), step);
         }
         let of_scene = |scene: usize| numbers.iter().map(move |number| scene * stride + number);
         (0..self.scenes.len()).flat_map(of_scene).collect()

@@ -106,10 +106,7 @@ fn write(
 ) -> Result<()> {
     // Only a board's recording can be cut off: the simulator's file is written at the end.
     let is_simulated = !args.finish && args.port == "sim" || hello.is_some_and(|hello| hello.board.is_simulated());
-    let mut rows = align(board, forces)?;
-    for row in &mut rows {
-        row.is_simulated = is_simulated;
-    }
+    let rows = align(board, forces, is_simulated)?;
     let mut bytes = Vec::new();
     write_csv(&mut bytes, &rows)?;
     if parquet::is_parquet(&args.output) {

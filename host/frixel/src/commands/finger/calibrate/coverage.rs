@@ -20,7 +20,7 @@ use frixel_hil_sim::{
     TouchConfig, WorldOptions, example_finger,
 };
 use frixel_lab::calibration::{align, write_csv};
-use frixel_lab::fit::{self, Estimate, Fit, FitError, Row, Settings};
+use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
 use frixel_model::{Contact, Finger};
 use frixel_play::{Player, RigStream};
 use frixel_scene::{Scene, Screen, compile};
@@ -53,8 +53,7 @@ fn arguments(line: &str) -> CalibrateArgs {
 fn calibrated(line: &str) -> Vec<u8> {
     let (board, forces) = Simulated::new(&arguments(line)).unwrap().record(&Interrupt::default()).unwrap();
     let mut csv = Vec::new();
-    let rows = align(&board, &forces).unwrap().into_iter().map(|row| Row { is_simulated: true, ..row });
-    write_csv(&mut csv, &rows.collect::<Vec<_>>()).unwrap();
+    write_csv(&mut csv, &align(&board, &forces, true).unwrap()).unwrap();
     csv
 }
 
