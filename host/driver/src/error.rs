@@ -137,8 +137,8 @@ pub enum DeviceError {
     },
     /// The board's count of received bytes restarted: the board was reset, or another host connected to it.
     #[error(
-        "the board on {port} restarted, or another program connected to it, during: {command}; connect again and upload the \
-         scene again"
+        "the board on {port} restarted, or another program connected to it, during: {command}; connect again and \
+         upload the scene again"
     )]
     Restarted {
         /// Name of the link.

@@ -29,7 +29,7 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// What the command says, and its error, if it fails.
+    /// Output of the command, and its error; empty if it succeeds.
     fn run_to_end(&self, line: &str) -> (String, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
         let output = command.args(line.split_whitespace()).current_dir(self.0.path()).output().unwrap();
@@ -38,7 +38,7 @@ impl Folder {
         (text(output.stdout), text(output.stderr))
     }
 
-    /// What the command says, or its error.
+    /// Output of the command, or its error.
     fn run(&self, line: &str) -> Result<String, String> {
         let (said, error) = self.run_to_end(line);
         if error.is_empty() { Ok(said) } else { Err(error) }

@@ -98,8 +98,8 @@ impl From<InputError> for io::Error {
     }
 }
 
-/// Calls `each` with every line that has an end, and returns their bytes. A process that was killed may have left a part
-/// of a line behind them.
+/// Calls `each` with every line that has an end, and returns the number of their bytes. A killed process may have left
+/// part of a line behind them.
 pub fn whole_lines(input: impl Read, mut each: impl FnMut(&[u8])) -> io::Result<u64> {
     let (mut input, mut line, mut bytes) = (BufReader::new(input), Vec::new(), 0);
     while input.read_until(b'\n', &mut line)? > 0 {

@@ -54,8 +54,8 @@ impl Scene {
         with_bounds.collect()
     }
 
-    /// Each file's name in messages, and the fields that its layers have unless they have them in any unit: from
-    /// `[defaults]` of the file and of those that it includes.
+    /// Each file's name in messages, with the defaults of its layers. They come from `[defaults]` of the file itself and
+    /// of the files that it includes.
     pub fn layer_defaults(&self) -> Vec<(&str, DeTable<'_>)> {
         let files = self.source.files();
         let own = |file| {

@@ -18,8 +18,8 @@ use crate::program::{drafted, touch_source};
 use crate::request::Request;
 
 /// Checks the scene of a request, as JSON: `ok` and `problems`; and for a scene without mistakes, or one that plays as
-/// a draft (`isDraft`), also `screen`, `layers`, `defaults` (of each file, for `layer_text::read`), `report` (the text of
-/// `frixel check`), and in newtons `lowN`,
+/// a draft (`isDraft`), also `screen`, `layers`, `defaults` (of each file, for `layer_text::read`), `report` (the text
+/// of `frixel check`), and in newtons `lowN`,
 /// `highN` (what the scene asks for), `reachN` and `naturalN`.
 pub fn check(request: &Request) -> Value {
     answer(request, true)

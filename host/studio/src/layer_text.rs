@@ -50,9 +50,9 @@ struct Change<'r> {
     after: &'r str,
 }
 
-/// Reads a text, as JSON: its `values`; the `lines` in which its layers begin, from 1; and the `fields` of each layer,
-/// with the defaults for those that it has in no unit. The request is the text, a zero character and the defaults, as
-/// `check` answers them, or nothing.
+/// Reads a text, as JSON: its `values`; the `lines` in which its layers begin, from 1; and the `fields` of each layer.
+/// These include a default if the layer does not have that field in any unit. The request is the text, optionally
+/// followed by a zero character and the defaults as `check` returns them.
 pub(crate) fn read(request: &str) -> Result<String, TextError> {
     let (text, defaults) = request.split_once(BETWEEN).unwrap_or((request, "{}"));
     let defaults: Map<String, Value> = serde_json::from_str(defaults).map_err(|_| TextError::Request)?;

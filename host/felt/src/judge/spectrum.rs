@@ -46,8 +46,8 @@ pub(super) fn most_noticeable(samples: &[f64], sample_hz: f64, gain: impl Fn(f64
     components.max_by(|one, other| salience(one).total_cmp(&salience(other)))
 }
 
-/// How far a sine is from its largest bin, in bins, by the larger bin beside that: the ratio of both is known for a Hann
-/// window.
+/// Distance of a sine from its largest bin, in bins: for a Hann window, the ratio of that bin and the larger one beside
+/// it states the distance.
 fn offset(power: &[f64], bin: usize) -> f64 {
     let amplitude = |bin: Option<usize>| bin.and_then(|bin| power.get(bin)).map_or(0.0, |power| power.sqrt());
     let (left, here, right) = (amplitude(bin.checked_sub(1)), amplitude(Some(bin)), amplitude(bin.checked_add(1)));

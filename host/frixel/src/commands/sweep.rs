@@ -139,7 +139,7 @@ fn result_files(out: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths.filter(|path| path.extension().is_some_and(|end| end == LINES)).collect())
 }
 
-/// Reads the results in a file. A damaged line is none: its cell is played again.
+/// Reads the results in a file. A damaged line is skipped, so that its cell is played again.
 fn read_results(path: &Path, mut each: impl FnMut(CellResult)) -> io::Result<()> {
     let lines = input::open(path, u64::MAX)?;
     input::whole_lines(lines, |line| result(line).into_iter().for_each(&mut each)).map(drop)

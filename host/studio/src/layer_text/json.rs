@@ -23,7 +23,7 @@ pub(crate) fn of(value: &DeValue<'_>) -> String {
     }
 }
 
-/// A layer as JSON: its fields in the order of the text, then the defaults for those that it has in no unit.
+/// A layer as JSON: its fields in the order of the text, then the defaults of fields that it does not have in any unit.
 pub(super) fn with_defaults(layer: &DeValue<'_>, defaults: &Map<String, Value>) -> String {
     let Some(table) = layer.as_table() else { return of(layer) };
     let is_absent = |name: &str| !table.keys().any(|own| stem(own.get_ref()) == stem(name));

@@ -83,7 +83,7 @@ export type Checked = Reach & {
   report: [string, string][];
   reachN: number;
   layers: Layer[];
-  /** Of the layers of each file, by its name, for `read_text`. */
+  /** Defaults of the layers in each file, by its name; an argument of `read_text`. */
   defaults: Record<string, string>;
 };
 export type Mistaken = { ok: false; isDraft?: false; report?: undefined; problems: Problem[] };

@@ -24,7 +24,7 @@ export class EditedLayers {
    * @type {Map<string | undefined, string>}
    */
   #texts = new Map();
-  /** Of the layers of each file. @type {Map<string | undefined, string>} */
+  /** Defaults of the layers in each file. @type {Map<string | undefined, string>} */
   #defaults = new Map();
 
   /** @param {Editor} editor */
