@@ -7,6 +7,7 @@
 mod config;
 mod leakage;
 mod load;
+mod mean_square;
 mod noise;
 mod sliding;
 
@@ -19,6 +20,7 @@ use crate::world::Felt;
 pub use config::{FingertipConfig, RELAXATION_LENGTH_M};
 use leakage::Leakage;
 use load::LoadWander;
+use mean_square::MeanSquare;
 use noise::FrictionNoise;
 use sliding::Sliding;
 pub use sliding::{SlipStep, one_minus_exp};
@@ -65,6 +67,7 @@ pub(crate) struct Fingertip {
     wander: LoadWander,
     noise: FrictionNoise,
     leakage: Leakage,
+    mean_square: MeanSquare,
     sliding: Sliding,
     natural_n: [f64; 2],
     electric_n: [f64; 2],
@@ -87,6 +90,7 @@ impl Fingertip {
             wander: LoadWander::new(config.load_sd_n, tick_hz, seed),
             noise: FrictionNoise::new(config.noise_rms_n, seed),
             leakage: Leakage::new(config.leakage_hz, tick_hz),
+            mean_square: MeanSquare::default(),
             sliding: Sliding::new(config.relaxation_length_m, config.pre_sliding, tick_hz),
             natural_n: [0.0; 2],
             electric_n: [0.0; 2],
@@ -113,12 +117,20 @@ impl Fingertip {
         self.scene_load_n = law.normal_load_n();
     }
 
+    /// Sets the half period of the carrier, over which friction follows the mean square: if so configured, or if the
+    /// law was measured, and so is a mean itself.
+    pub(crate) fn set_half_period(&mut self, ticks: u32) {
+        let is_mean = self.config.follows_mean_square || matches!(self.profile, FrictionLaw::Empirical(_));
+        self.mean_square = if is_mean { MeanSquare::over(ticks) } else { MeanSquare::default() };
+    }
+
     /// Slides to `finger` in a tick, over an electrode with the voltage of `output`. `measured_load_n`, if any,
     /// replaces the varying load.
     ///
-    /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters.
+    /// The electrostatic pressure follows the squared voltage, Eq. (8), so only its mean over the tick matters; or over
+    /// half a carrier period, see [`FingertipConfig::follows_mean_square`].
     pub(crate) fn slide(&mut self, output: &Output, finger: &FingerState, measured_load_n: Option<f64>) -> Felt {
-        let voltage_v_rms = self.leakage.tick(output).sqrt();
+        let voltage_v_rms = self.mean_square.tick(self.leakage.tick(output)).sqrt();
         if self.wander.tick() {
             self.press(measured_load_n, voltage_v_rms);
         }
@@ -144,6 +156,7 @@ impl Fingertip {
     /// Lifts the finger: there is no friction, and the next touch starts without any.
     pub(crate) fn lift(&mut self, output: &Output) -> Felt {
         self.leakage.lift();
+        self.mean_square.lift();
         self.sliding.lift();
         (self.natural_n, self.electric_n) = ([0.0; 2], [0.0; 2]);
         Felt {

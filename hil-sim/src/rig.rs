@@ -258,7 +258,7 @@ impl<'a> Rig<'a> {
         // The knots of an empirical law depend on the board's largest voltage.
         let Ok(voltage_max_v_rms) = voltage_max_v_rms(&header, &self.board) else { return };
         if let Ok(law) = (Header { voltage_max_v_rms, ..header }).friction_law() {
-            self.world.set_finger(law);
+            self.world.set_finger(law, header.carrier(&self.board.limits, self.board.tick_hz).half_period_ticks);
         }
     }
 

@@ -184,13 +184,15 @@ impl World {
         })
     }
 
-    /// Loads the finger of a scene's profile under its load. A [finger of the world's own](OwnFinger) stays.
-    pub fn set_finger(&mut self, law: impl Into<FrictionLaw>) {
+    /// Loads the finger of a scene's profile under its load, and half the period of the scene's carrier in ticks. A
+    /// [finger of the world's own](OwnFinger) stays.
+    pub fn set_finger(&mut self, law: impl Into<FrictionLaw>, half_period_ticks: u32) {
         let law = law.into();
         self.fingertip.set_scene_load(&law);
         if self.config.own_finger.is_none() {
             self.fingertip.set_law(law);
         }
+        self.fingertip.set_half_period(half_period_ticks);
     }
 
     /// Replaces the touch source. Pending reports are lost, and the new source reports the finger at its first sample.

@@ -6,7 +6,7 @@ use frixel_hil_sim::{
     AmplifierConfig, Felt, FingerState, FingertipConfig, Person, Point, ReferenceFriction, Stroke, StrokeRow,
     TouchConfig, World, WorldConfig, WorldFault, WorldOptions, example_finger,
 };
-use frixel_model::{Contact, Finger};
+use frixel_model::{Contact, Finger, FrictionLaw};
 use frixel_wire::dac_code::DacCode;
 use proptest::prelude::*;
 
@@ -32,6 +32,34 @@ fn ideal_amplifier() -> WorldConfig {
 fn square(tick: u64, dac_code: i16) -> Drive {
     let positive = (tick / 20).is_multiple_of(2);
     Drive { dac_code: DacCode::from_bits(if positive { dac_code } else { -dac_code }), amplifier_enable: true }
+}
+
+/// A sine carrier of 1 kHz.
+fn sine(tick: u64, dac_code: i16) -> Drive {
+    let angle = core::f64::consts::PI * (tick % 40) as f64 / 20.0;
+    let dac_code = DacCode::from_bits((f64::from(dac_code) * angle.sin()).round() as i16);
+    Drive { dac_code, amplifier_enable: true }
+}
+
+/// A sine raises the mean friction of a finger that follows each tick, and not that of one that follows the mean square,
+/// as a measured law does.
+#[test]
+fn a_sine_is_felt_as_its_rms_voltage_by_a_finger_that_follows_the_mean_square() {
+    let contact = example_finger().unwrap();
+    let empirical = frixel_testkit::empirical_header().friction_law().unwrap();
+    let mean_over_constant = |law: FrictionLaw, follows_mean_square| {
+        let fingertip = FingertipConfig { follows_mean_square, ..FingertipConfig::default() };
+        let mut world = world(&WorldConfig { fingertip, ..ideal_amplifier() });
+        world.set_finger(law, 20);
+        world.start_stroke();
+        let felt = (0..4_000).map(|tick| world.apply(sine(tick, 28_000)));
+        let mean_n = felt.skip(3_600).map(|felt| felt.electric_friction_n).sum::<f64>() / 400.0;
+        mean_n / law.electric_friction_n(200.0 * 28_000.0 / DAC_FULL * core::f64::consts::FRAC_1_SQRT_2)
+    };
+    assert!(mean_over_constant(contact.into(), false) > 1.08);
+    for ratio in [mean_over_constant(contact.into(), true), mean_over_constant(empirical, false)] {
+        assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
+    }
 }
 
 /// Whatever moves the finger, the world is the same: felt friction and touch reports, bit for bit. A finger is up before
@@ -86,7 +114,7 @@ fn a_square_drive_without_lag_is_felt_as_the_model_says() {
     for (contact, dac_code) in contacts.iter().flat_map(|contact| [1, 3000, 16_384, 32_767].map(|code| (contact, code)))
     {
         let mut world = world(&ideal_amplifier());
-        world.set_finger(*contact);
+        world.set_finger(*contact, 20);
         world.start_stroke();
         let felt = (0..4000).map(|tick| world.apply(square(tick, dac_code))).last().unwrap();
         let voltage_v_rms = 200.0 * f64::from(dac_code) / DAC_FULL;
@@ -252,7 +280,7 @@ fn a_scenarios_own_finger_stays_and_the_scenes_does_not() {
     let person = Person::drawn(5);
     let contact = person.contact(1e-6 / 3.9).unwrap();
     let mut world = world(&WorldConfig { own_finger: Some(contact.into()), ..ideal_amplifier() });
-    world.set_finger(example_finger().unwrap());
+    world.set_finger(example_finger().unwrap(), 20);
     world.start_stroke();
     let felt = (0..4000).map(|tick| world.apply(square(tick, 20_000))).last().unwrap();
     assert!((felt.natural_friction_n - contact.natural_friction_n()).abs() < 1e-12);

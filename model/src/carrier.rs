@@ -41,6 +41,12 @@ pub struct ElectrodeCurrent {
 }
 
 impl Carrier {
+    /// The carrier of a board with `tick_hz` ticks a second.
+    pub fn new(waveform: Waveform, half_period_ticks: u32, tick_hz: u32, edge_time_constant_s: f32) -> Self {
+        let half_period_s = half_period_ticks as f32 * (1.0 / tick_hz as f32);
+        Self { waveform, half_period_s, half_period_ticks, edge_time_constant_s }
+    }
+
     /// Ratio of the peak at the DAC to the rms on the electrode: the crest factor, corrected for the loss in the edges.
     ///
     /// The lag leaves `1 - (2 tau/T) tanh(T/(2 tau))` of a square wave's mean square: the steady response goes from
@@ -55,12 +61,7 @@ impl Carrier {
     /// use frixel_model::{Carrier, Waveform};
     ///
     /// // 20 us edges take 8 % of the mean square of a 1 kHz square wave.
-    /// let carrier = Carrier {
-    ///     waveform: Waveform::Square,
-    ///     half_period_s: 500e-6,
-    ///     half_period_ticks: 20,
-    ///     edge_time_constant_s: 20e-6,
-    /// };
+    /// let carrier = Carrier::new(Waveform::Square, 20, 40_000, 20e-6);
     /// let peak = carrier.peak_per_rms();
     /// assert!((peak * peak * 0.92 - 1.0).abs() < 2e-7);
     /// ```
@@ -121,7 +122,7 @@ fn held_sine_fraction<T: Real>(r: T, half_period_ticks: T) -> T {
 ///
 /// Lambert's continued fraction `tanh(r) = r/(1 + r^2/(3 + r^2/(5 + ...)))` keeps its precision for small `r`, and
 /// takes a tenth of the code of `tanh`.
-fn tangent_deficit<T: Real>(r: T, square: T) -> T {
+pub(crate) fn tangent_deficit<T: Real>(r: T, square: T) -> T {
     /// Argument from which `tanh` is 1 to the last bit of `f64`.
     const STEEP: f32 = 20.0;
     /// Number of terms after which the remainder is below the last bit, for arguments up to [`STEEP`].

@@ -1,14 +1,14 @@
 //! Steady friction of a finger on a screen: by the contact model, or by an empirical law.
 
-use crate::{Contact, EmpiricalLaw, LoadedContact, ParameterError};
+use crate::{CarriedContact, EmpiricalLaw, LoadedContact, ParameterError, Ripple};
 
 /// Steady friction as a function of the voltage, under one normal load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "no allocator to box it, and few values exist")]
 pub enum FrictionLaw {
-    /// By the contact model.
-    Contact(LoadedContact<f64>),
-    /// A measured law.
+    /// By the contact model, at a constant voltage or as the mean under a carrier.
+    Contact(CarriedContact<f64>),
+    /// A measured law, which is a mean under the carrier of the measurement.
     Empirical(MeasuredFriction),
 }
 
@@ -28,7 +28,7 @@ impl FrictionLaw {
     /// Friction at no voltage, `mu F_N`, in newtons.
     pub fn natural_friction_n(&self) -> f64 {
         match self {
-            Self::Contact(contact) => contact.natural_friction_n(),
+            Self::Contact(carried) => carried.contact().natural_friction_n(),
             Self::Empirical(measured) => measured.friction_coefficient * measured.normal_load_n,
         }
     }
@@ -36,10 +36,7 @@ impl FrictionLaw {
     /// Normal load in newtons.
     pub fn normal_load_n(&self) -> f64 {
         match self {
-            Self::Contact(contact) => {
-                let scales: &Contact<f64> = contact.contact();
-                contact.natural_friction_n() / (scales.friction_scale_n() / scales.load_scale_n())
-            }
+            Self::Contact(carried) => carried.contact().normal_load_n(),
             Self::Empirical(measured) => measured.normal_load_n,
         }
     }
@@ -47,7 +44,7 @@ impl FrictionLaw {
     /// Electric friction in newtons at an rms voltage of zero or more.
     pub fn electric_friction_n(&self, voltage_v_rms: f64) -> f64 {
         match self {
-            Self::Contact(contact) => contact.electric_friction_n(voltage_v_rms),
+            Self::Contact(carried) => carried.electric_friction_n(voltage_v_rms),
             Self::Empirical(measured) => measured.law.electric_friction_n(voltage_v_rms),
         }
     }
@@ -55,8 +52,17 @@ impl FrictionLaw {
     /// The rms voltage in volts for an electric friction in newtons; zero for zero or less.
     pub fn voltage_v_rms(&self, electric_friction_n: f64) -> f64 {
         match self {
-            Self::Contact(contact) => contact.voltage_v_rms(electric_friction_n),
+            Self::Contact(carried) => carried.voltage_v_rms(electric_friction_n),
             Self::Empirical(measured) => measured.law.voltage_v_rms(electric_friction_n),
+        }
+    }
+
+    /// The mean friction under a carrier with this ripple. A measured law stays as it is.
+    #[must_use]
+    pub fn under_carrier(self, ripple: Ripple) -> Self {
+        match self {
+            Self::Contact(carried) => Self::Contact(carried.contact().under_carrier(ripple)),
+            Self::Empirical(_) => self,
         }
     }
 
@@ -67,7 +73,7 @@ impl FrictionLaw {
     /// The load is negative or not finite, or too large for the contact model.
     pub fn under_load(&self, normal_load_n: f64) -> Result<Self, ParameterError> {
         match *self {
-            Self::Contact(contact) => contact.contact().under_load(normal_load_n).map(Self::Contact),
+            Self::Contact(carried) => carried.under_load(normal_load_n).map(Self::Contact),
             Self::Empirical(measured) => {
                 let normal_load_n = crate::error::not_negative("normal_load_n", normal_load_n)?;
                 Ok(Self::Empirical(MeasuredFriction { normal_load_n, ..measured }))
@@ -77,7 +83,8 @@ impl FrictionLaw {
 }
 
 impl From<LoadedContact<f64>> for FrictionLaw {
+    /// The friction at a constant voltage.
     fn from(contact: LoadedContact<f64>) -> Self {
-        Self::Contact(contact)
+        Self::Contact(contact.under_carrier(Ripple::NONE))
     }
 }

@@ -5,9 +5,9 @@
 //! in newtons to volts, without root or division. It takes 2 KB and is built without `f64`.
 //!
 //! ```
-//! use frixel_model::{Finger, InverseTable};
-//! // 10 um of coating, 0.5 N of load, at most 150 V, no limit on the friction.
-//! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, 150.0, f32::INFINITY)?;
+//! use frixel_model::{Finger, InverseTable, Ripple};
+//! // 10 um of coating, 0.5 N of load, an ideal square carrier, at most 150 V, no limit on the friction.
+//! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, Ripple::NONE, 150.0, f32::INFINITY)?;
 //! let voltage_v_rms = table.voltage_v_rms(0.02);
 //! assert!((voltage_v_rms - 128.0).abs() < 0.5);
 //! # Ok::<(), frixel_model::TableError>(())
@@ -131,6 +131,7 @@ mod error;
 mod finger;
 mod friction_law;
 mod real;
+mod ripple;
 mod root;
 mod shear;
 mod soft;
@@ -140,7 +141,7 @@ mod touch_current;
 
 pub use carrier::{Carrier, ElectrodeCurrent, Waveform};
 pub use coating::{Slab, VACUUM_PERMITTIVITY_F_PER_M, attraction_pa, contact_attraction_pa, effective_gap_m};
-pub use contact::{Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
+pub use contact::{CarriedContact, Contact, FiniteContact, LoadedContact, LowerBound, PulledContact};
 pub use division::divide_wide;
 pub use empirical::{EmpiricalLaw, LawError, LawPoint};
 pub use error::{Expected, InverseError, ParameterError, StateError};
@@ -148,6 +149,7 @@ pub use finger::Finger;
 pub use fixed::types::{U0F32, U1F31};
 pub use friction_law::{FrictionLaw, MeasuredFriction};
 pub use real::Real;
+pub use ripple::Ripple;
 pub use shear::{ShearOnset, TissueSpring};
 pub use soft::{PowerLawShape, SoftContact, SoftFinger, SoftLoadedContact, SoftLowerBound, contact_exponent};
 pub use state::{ContactModel, ContactState, Sensitivity};

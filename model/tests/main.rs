@@ -1,6 +1,7 @@
 //! The tests of the crate as a whole, one program for all of them.
 
 mod accuracy;
+mod carried;
 mod common;
 mod documented;
 mod empirical;

@@ -7,7 +7,7 @@ use std::error::Error;
 
 use frixel_control::{Active, Board, CarrierTiming, Order, Sense, StandstillRamp, Ticker, Track};
 use frixel_layers::{BitmapPool, Blend, Constant, Header, Layer, Record, Region};
-use frixel_model::{Carrier, Contact, Finger, InverseTable};
+use frixel_model::{Contact, Finger, InverseTable};
 use frixel_testkit::{HEADER, IdealMonitor};
 
 const FINGER: Finger<f32> = Finger::<f32>::EXAMPLE;
@@ -20,18 +20,16 @@ const TICKS: u32 = 800;
 
 /// The coefficients of a scene: its carrier, its limits, the table of its finger, and its layers.
 fn coefficients(board: &Board, scene: &Header, records: &[Record]) -> Result<Active, Box<dyn Error>> {
-    let half_period_ticks = board.ticks(0.5 / scene.carrier_hz);
-    let half_period_s = half_period_ticks as f32 * board.tick_period_s();
-    let edge_time_constant_s = board.limits.edge_time_constant_s;
-    let carrier = Carrier { waveform: scene.waveform, half_period_s, half_period_ticks, edge_time_constant_s };
+    let carrier = scene.carrier(&board.limits, board.tick_hz);
     let codes_per_v_rms = carrier.peak_per_rms() * f32::from(i16::MAX) / board.limits.full_scale_v_peak;
     let code_max = board.ceilings().code(scene.voltage_max_v_peak);
     let mut active = Active::new();
-    active.carrier = CarrierTiming::new(scene.waveform, half_period_ticks, codes_per_v_rms, code_max);
+    active.carrier = CarrierTiming::new(scene.waveform, carrier.half_period_ticks, codes_per_v_rms, code_max);
     active.voltage_max_v_rms = scene.voltage_max_v_rms.min(scene.voltage_max_v_peak / carrier.peak_per_rms());
     active.slew_step_v = scene.slew_v_per_s * board.tick_period_s();
     active.host_timeout_ticks = board.ticks(scene.host_timeout_s);
-    active.table = InverseTable::of_finger(&FINGER, GAP_M, LOAD_N, active.voltage_max_v_rms, f32::INFINITY)?;
+    let max_v_rms = active.voltage_max_v_rms;
+    active.table = InverseTable::of_finger(&FINGER, GAP_M, LOAD_N, carrier.ripple(), max_v_rms, f32::INFINITY)?;
     active.layers.begin(scene, std::iter::empty());
     for record in records {
         active.layers.push(record, board.tick_hz, &|_| None)?;
@@ -59,11 +57,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         codes.push(drive.dac_code.bits());
     }
     let telemetry = ticker.status().telemetry;
-    let contact = Contact::new(&FINGER, GAP_M)?.under_load(LOAD_N)?;
-    let felt_n = contact.electric_friction_n(telemetry.voltage_v_rms);
+    let Finger { radius_m, stiffness_pa_per_m, friction_coefficient } = FINGER;
+    let finger = Finger::<f64> {
+        radius_m: radius_m.into(),
+        stiffness_pa_per_m: stiffness_pa_per_m.into(),
+        friction_coefficient: friction_coefficient.into(),
+    };
+    let carrier = HEADER.carrier(&board.limits, board.tick_hz);
+    let contact = Contact::new(&finger, GAP_M.into())?.under_load(LOAD_N.into())?.under_carrier(carrier.ripple());
+    let felt_n = contact.electric_friction_n(telemetry.voltage_v_rms.into());
     println!("{} V rms for {TARGET_N} N: the finger feels {felt_n:.6} N", telemetry.voltage_v_rms);
-    // The table is within 1e-5, and the contact is computed in f32.
-    assert!((felt_n / TARGET_N - 1.0).abs() < 2e-5, "{felt_n} N");
+    assert!((felt_n / f64::from(TARGET_N) - 1.0).abs() < f64::from(InverseTable::RELATIVE_ERROR), "{felt_n} N");
     assert!(codes.iter().any(|code| *code > 0) && codes.iter().any(|code| *code < 0), "the carrier alternates");
     Ok(())
 }

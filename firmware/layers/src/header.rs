@@ -1,7 +1,7 @@
 //! The header of a scene: the settings for all its layers.
 
 use frixel_model::{
-    Contact, EmpiricalLaw, Expected, Finger, FrictionLaw, LawError, MeasuredFriction, ParameterError, Waveform,
+    Carrier, Contact, EmpiricalLaw, Expected, Finger, FrictionLaw, LawError, MeasuredFriction, ParameterError, Waveform,
 };
 use frixel_wire::bytes::{first_difference, get_at, put_at};
 use frixel_wire::hello::BoardLimits;
@@ -10,6 +10,7 @@ use frixel_wire::scene::{POINTS_MAX, RECORDS_MAX, SceneError};
 
 use crate::finger_law::FingerLaw;
 use crate::parameters::{range, within};
+use crate::prepare::ticks;
 
 /// Version of the layout of scenes.
 pub const SCENE_VERSION: u16 = 1;
@@ -247,7 +248,13 @@ impl Header {
         ]
     }
 
-    /// Steady friction of the scene's finger, in `f64`, from the board's `f32` numbers. The knots of a law depend on
+    /// The carrier on a board, with a half period of the nearest whole number of ticks.
+    pub fn carrier(&self, limits: &BoardLimits, tick_hz: u32) -> Carrier {
+        let half_period_ticks = ticks(0.5 / self.carrier_hz, tick_hz);
+        Carrier::new(self.waveform, half_period_ticks, tick_hz, limits.edge_time_constant_s)
+    }
+
+    /// Steady friction of the scene's finger at a constant voltage, in `f64`, from the board's `f32` numbers. The knots of a law depend on
     /// the largest voltage: if the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a header
     /// with the lower voltage.
     ///
@@ -272,7 +279,7 @@ impl Header {
             stiffness_pa_per_m: f64::from(self.stiffness_pa_per_m),
             friction_coefficient,
         };
-        Contact::new(&finger, f64::from(self.effective_gap_m))?.under_load(normal_load_n).map(FrictionLaw::Contact)
+        Contact::new(&finger, f64::from(self.effective_gap_m))?.under_load(normal_load_n).map(FrictionLaw::from)
     }
 
     /// Checks that every number is within the ranges of a board with these limits and the tick rate `tick_hz`.

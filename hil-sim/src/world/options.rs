@@ -15,6 +15,8 @@ pub struct WorldOptions {
     pub ideal: bool,
     /// Leaves out the leakage of charge through the skin.
     pub no_leakage: bool,
+    /// Whether friction follows the mean squared voltage of the carrier: [`FingertipConfig::follows_mean_square`].
+    pub mean_square: bool,
     /// Touch source. `None`: [`TouchConfig::REALISTIC`], or [`TouchConfig::IDEAL`] in an ideal world.
     pub touch: Option<TouchConfig>,
     /// Finger, whatever scene plays. `None`: the finger for which the scene is made.
@@ -34,13 +36,20 @@ impl WorldConfig {
     /// This ideal world with the effects of `options`. The lags of amplifier and electrode stay.
     #[must_use]
     pub fn with(self, options: &WorldOptions) -> Self {
-        let &WorldOptions { ideal, no_leakage, touch, finger } = options;
+        let &WorldOptions { ideal, no_leakage, mean_square, touch, finger } = options;
         let own_finger = finger.map(|finger| finger.law);
         if ideal {
-            return Self { own_finger, touch: touch.map_or(self.touch, TouchConfig::without_losses), ..self };
+            let fingertip = FingertipConfig { follows_mean_square: mean_square, ..self.fingertip };
+            return Self {
+                own_finger,
+                fingertip,
+                touch: touch.map_or(self.touch, TouchConfig::without_losses),
+                ..self
+            };
         }
         let AmplifierConfig { output_time_constant_s, electrode_time_constant_s, .. } = self.amplifier;
         let fingertip = finger.map_or(FingertipConfig::REALISTIC, |finger| finger.fingertip);
+        let fingertip = FingertipConfig { follows_mean_square: mean_square, ..fingertip };
         Self {
             own_finger,
             amplifier: AmplifierConfig {

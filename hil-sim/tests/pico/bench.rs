@@ -43,7 +43,8 @@ fn world() -> World {
     let [left, right] = [(4e-3, 30e-3), (116e-3, 45e-3)].map(|(x_m, y_m)| Point { x_m, y_m });
     let stroke = Stroke::constant_speed(left, right, 0.1).unwrap().looped(0.02).unwrap();
     let mut world = World::new(WorldConfig::of(&BOARD), stroke, 1).unwrap();
-    world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+    let Program { header, carrier, .. } = program(CONSTANT);
+    world.set_finger(header.friction_law().unwrap(), carrier.half_period_ticks);
     world
 }
 
@@ -71,7 +72,8 @@ impl Bench {
     /// place from a touch frame.
     pub(super) fn in_world_with_frame(image: &Image, config: &WorldConfig, stroke: Stroke, seed: u64) -> Self {
         let mut world = World::new(*config, stroke, seed).unwrap();
-        world.set_finger(program(CONSTANT).header.friction_law().unwrap());
+        let Program { header, carrier, .. } = program(CONSTANT);
+        world.set_finger(header.friction_law().unwrap(), carrier.half_period_ticks);
         let bench = Self::of(PicoRig::start(image, world).unwrap());
         bench.with(PicoRig::attach_frame);
         bench.pass(SWITCH_TIME);

@@ -120,7 +120,7 @@ mod stages {
 
         fn world(&self) -> Outcome<()> {
             let mut world = World::new(self.rig.world, self.stroke.clone(), SEED)?;
-            world.set_finger(self.program.header.friction_law()?);
+            world.set_finger(self.program.header.friction_law()?, self.program.carrier.half_period_ticks);
             world.start_stroke();
             for tick in 0..self.ticks() {
                 black_box(world.sense());

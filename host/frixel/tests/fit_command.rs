@@ -7,6 +7,7 @@ use std::path::Path;
 
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{self, Settings};
+use frixel_model::Waveform;
 use frixel_scene::{Evidence, FingerProfile, Profile, Screen};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -46,6 +47,7 @@ fn a_calibrated_person_is_recovered() {
         voltage_v_rms: 150.0,
         normal_load_n: None,
         coating_gap_m: 1e-6 * Screen::example().coating_gap_um(),
+        ripple: fit::measured_ripple(Waveform::Square, 1e3),
         without: Vec::new(),
         seed: 1,
     };

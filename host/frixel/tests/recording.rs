@@ -55,7 +55,7 @@ fn a_recording_plays_the_same_bits_again_without_its_files() {
     let plays = [
         "--seconds 0.3",
         "--seconds 0.3 --ideal --seed 18446744073709551615",
-        "--seconds 0.5 --csv-hz 40000 --no-leakage --finger moist --screen example",
+        "--seconds 0.5 --csv-hz 40000 --skin no-leakage --finger moist --screen example",
         "--stroke stroke.csv --touch touch.toml --finger-seed 7",
         "--stroke human --seconds 1 --seed 5 --touch 500",
         "--from 10.1,20.3 --to 33.3,21.7 --speed 77.7 --times 2 --minimum-jerk --csv-hz 500",

@@ -1,4 +1,4 @@
-//! `frixel report`: three questions on the first screen, and numbers that are what the model's bounds say.
+//! `frixel report`: four questions on the first screen, and numbers that are what the model's bounds say.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
 use std::collections::{BTreeMap, HashMap};
@@ -86,14 +86,14 @@ fn table(files: &Files, section: &str) -> Vec<Vec<String>> {
 }
 
 #[test]
-fn three_questions_have_a_plot_and_a_table_on_the_first_screen() {
+fn four_questions_have_a_plot_and_a_table_on_the_first_screen() {
     let files = report();
     let page = &files["index.html"];
-    let names = ["error-against-run-time.csv", "index.html", "scene.csv", "stability.csv"];
+    let names = ["carrier.csv", "error-against-run-time.csv", "index.html", "scene.csv", "stability.csv"];
     assert_eq!(files.keys().collect::<Vec<_>>(), names);
     let (screen, below) = page.split_once("<footer>").unwrap();
     for tag in ["<section ", "<svg ", "<table>"] {
-        assert_eq!((screen.matches(tag).count(), below.matches(tag).count()), (3, 0), "{tag}");
+        assert_eq!((screen.matches(tag).count(), below.matches(tag).count()), (4, 0), "{tag}");
     }
     for outside in ["<script", "<link", "<img", "src=", "@import", "url(", "https://"] {
         assert!(!page.contains(outside), "{outside}");
@@ -113,7 +113,7 @@ fn three_questions_have_a_plot_and_a_table_on_the_first_screen() {
 fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let second = made(&folder.path().join("out"), &[]);
-    for name in ["stability.csv", "scene.csv"] {
+    for name in ["stability.csv", "scene.csv", "carrier.csv"] {
         let constant = |files: &Files| files[name].lines().filter(|row| !row.contains("flash")).collect::<String>();
         assert_eq!(constant(report()), constant(&second), "{name}");
     }
@@ -126,6 +126,17 @@ fn two_runs_differ_in_what_is_measured_and_in_nothing_else() {
     }
     // Without a file, the counts of this version and their date.
     assert!(second["index.html"].contains("in an emulator, source of 20"));
+}
+
+#[test]
+fn mean_friction_under_each_carrier_is_within_half_a_percent() {
+    let rows = rows(report(), "carrier");
+    assert_eq!(rows.len(), 30);
+    for row in &rows {
+        assert!(number(row, "relative_error").abs() < 5e-3, "{row:?}");
+    }
+    let uncorrected = rows.iter().map(|row| number(row, "relative_error_without_correction"));
+    assert!(uncorrected.fold(0.0, f64::max) > 0.1);
 }
 
 #[test]

@@ -18,6 +18,7 @@ use std::process::ExitCode;
 use filters::Filter;
 use frixel_hil_sim::Person;
 use frixel_lab::fit::{Settings, fit};
+use frixel_model::Ripple;
 use person::{Law, Protocol};
 use rayon::prelude::*;
 use tally::Tally;
@@ -33,6 +34,7 @@ fn settings() -> Settings {
         voltage_v_rms: 150.0,
         normal_load_n: None,
         coating_gap_m: simulated::COATING_GAP_M,
+        ripple: Ripple::NONE,
         without: Vec::new(),
         seed: 1,
     }

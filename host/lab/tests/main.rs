@@ -18,12 +18,14 @@ mod slow_sensors;
 mod tally;
 
 use frixel_lab::fit::Settings;
+use frixel_model::Ripple;
 
 fn settings() -> Settings {
     Settings {
         voltage_v_rms: 150.0,
         normal_load_n: None,
         coating_gap_m: simulated::COATING_GAP_M,
+        ripple: Ripple::NONE,
         without: Vec::new(),
         seed: 1,
     }

@@ -82,7 +82,8 @@ impl Simulation {
     /// The world of a board in another process, with a finger of its own, or else the one that `program` is for.
     pub fn world(&self, program: &Program) -> Result<World, SimulationError> {
         let mut world = World::new(self.rig.world, self.stroke.clone(), self.seed)?;
-        world.set_finger(program.header.friction_law().map_err(PlayError::Finger)?);
+        let law = program.header.friction_law().map_err(PlayError::Finger)?;
+        world.set_finger(law, program.carrier.half_period_ticks);
         Ok(world)
     }
 

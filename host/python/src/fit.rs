@@ -2,6 +2,7 @@
 
 use frixel_lab::fit::{self, FitError, Settings};
 use frixel_lab::table::Reading;
+use frixel_model::Waveform;
 use frixel_scene::{Experiment, Screen};
 use pyo3::prelude::*;
 
@@ -23,6 +24,8 @@ pub(crate) struct FitSettings {
     empirical: bool,
     voltage_v_rms: f64,
     normal_load_n: Option<f64>,
+    carrier_hz: f64,
+    sine: bool,
     without: Vec<String>,
     seed: u64,
     date: String,
@@ -35,9 +38,11 @@ pub(crate) struct FitSettings {
 #[pyfunction]
 pub(crate) fn fit_finger(py: Python<'_>, csv: String, settings: FitSettings) -> PyResult<(String, String, String)> {
     let screen: Screen = settings.screen.read(py)?;
-    let FitSettings { empirical, voltage_v_rms, normal_load_n, without, seed, date, method, screen: named } = settings;
+    let FitSettings { empirical, voltage_v_rms, normal_load_n, carrier_hz, sine, without, seed, .. } = settings;
+    let FitSettings { date, method, screen: named, .. } = settings;
     let coating_gap_m = screen.coating_gap_m();
-    let settings = Settings { voltage_v_rms, normal_load_n, coating_gap_m, without, seed };
+    let ripple = fit::measured_ripple(if sine { Waveform::Sine } else { Waveform::Square }, carrier_hz);
+    let settings = Settings { voltage_v_rms, normal_load_n, coating_gap_m, ripple, without, seed };
     let screen = screen.name.unwrap_or_else(|| named.name().to_owned());
     let experiment = Experiment { date, method, screen: screen.clone() };
     let fitted = interruptible(py, |goes_on| {

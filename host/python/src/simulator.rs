@@ -106,6 +106,7 @@ pub(crate) struct Settings<'py> {
     touch: Option<ProfileText>,
     ideal: bool,
     leakage: bool,
+    mean_square: bool,
     rows_per_s: u32,
 }
 
@@ -143,6 +144,7 @@ impl Settings<'_> {
             seed: self.seed,
             ideal: self.ideal,
             no_leakage: !self.leakage,
+            mean_square: self.mean_square,
             finger_seed: self.person,
             rows_hz: self.rows_per_s,
             finger: scene.own_finger().map(name),

@@ -46,7 +46,8 @@ def felt_csv(tmp_path: Path, scene: Path, *options: str) -> list[dict[str, str]]
         ("slider", ["--seed", "7", "--seconds", "1.5"], {"seed": 7}, 1.5),
         ("brick", ["--finger-seed", "3", "--touch", "500", "--seconds", "1"], {"person": 3, "touch": "500"}, 1),
         ("brick", ["--ideal", "--csv-hz", "500", "--seconds", "1"], {"ideal": True, "rows_per_s": 500}, 1),
-        ("brick", ["--no-leakage", "--seconds", "1"], {"leakage": False}, 1),
+        ("brick", ["--skin", "no-leakage", "--seconds", "1"], {"leakage": False}, 1),
+        ("brick", ["--skin", "mean-square", "--seconds", "1"], {"mean_square": True}, 1),
         ("brick", ["--finger", "dry", "--seconds", "1"], {"finger": "dry"}, 1),
         ("brick", ["--stroke", "human", "--seed", "5", "--seconds", "2"], {"stroke": Stroke.human(5), "seed": 5}, 2),
         (

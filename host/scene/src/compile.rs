@@ -1,6 +1,7 @@
 //! Compiles a scene to a program, and makes the checks that need the board's limits, other layers, or pictures.
 
 use frixel_layers::{HALF_PERIOD_MIN_TICKS, Header, Record, electric_friction_max_n};
+use frixel_model::{Carrier, Ripple};
 use frixel_wire::hello::BoardLimits;
 use frixel_wire::scene::RECORDS_MAX;
 
@@ -17,7 +18,7 @@ use super::optimise::optimise;
 use super::played_finger::PlayedFinger;
 use super::pool::Pool;
 use super::program::Program;
-use super::reach::{Reach, ReachError, carrier};
+use super::reach::{Reach, ReachError};
 use super::screen::EFFECTIVE_GAP_MAX_UM;
 use super::springs::SpringFit;
 use super::tick_cost;
@@ -104,7 +105,8 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
     let half_period_ticks = half_period_ticks(scene, tick_hz, log);
     let half_period_s = f64::from(half_period_ticks) / f64::from(tick_hz);
     let is_carrier_valid = log.mistakes() == mistakes;
-    let carrier = carrier(scene.carrier.waveform, half_period_ticks, tick_hz, limits);
+    let carrier = Carrier::new(scene.carrier.waveform, half_period_ticks, tick_hz, limits.edge_time_constant_s);
+    let ripple = carrier.ripple();
     let mut voltage = Voltage::of(scene, limits, &carrier, log);
     let mistakes = log.mistakes();
     voltage.end_with_law(scene, log);
@@ -126,7 +128,7 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         log.note(scene.profiles.place, note);
     }
     let mut header = header(scene, &voltage, &springs, effective_gap_um, half_period_s);
-    let reach = reach(scene, &mut header, if are_springs_valid { &mut *log } else { &mut unreported })?;
+    let reach = reach(scene, &mut header, ripple, if are_springs_valid { &mut *log } else { &mut unreported })?;
     // The reach is unknown if drive, finger or coating have other mistakes.
     let is_reach_known = log.mistakes() == mistakes;
     let (finger, note) = PlayedFinger::of(&scene.profiles);
@@ -159,13 +161,13 @@ fn assemble(scene: &Scene, limits: &BoardLimits, tick_hz: u32, log: &mut Log) ->
         patterns: Vec::new(),
         layers: LayerMap::default(),
         reach,
-        half_period_ticks,
+        carrier,
         finger,
         saturates: scene.drive.saturate,
         diagnostics: Vec::new(),
     };
     if is_reach_known {
-        let raise = |friction_n| voltage.raised_for(scene, &program.header, friction_n);
+        let raise = |friction_n| voltage.raised_for(scene, &program, friction_n);
         excess::check(scene, &layers, &raise, &program, log);
     }
     for warning in warning::of(scene, &program) {
@@ -258,8 +260,8 @@ fn effective_gap_um(scene: &Scene, log: &mut Log) -> f64 {
 }
 
 /// Returns the reach. Lowers the header's voltage until the contact is narrower than the finger.
-fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
-    let error = match Reach::of(header) {
+fn reach(scene: &Scene, header: &mut Header, ripple: Ripple, log: &mut Log) -> Option<Reach> {
+    let error = match Reach::of(header, ripple) {
         Ok(reach) => return Some(reach),
         Err(error) => error,
     };
@@ -276,7 +278,7 @@ fn reach(scene: &Scene, header: &mut Header, log: &mut Log) -> Option<Reach> {
     let voltages_v_rms = std::iter::successors(Some(header.voltage_max_v_rms), |voltage| Some(NARROWER * voltage));
     voltages_v_rms.take_while(|voltage| *voltage >= VOLTAGE_MIN_V_RMS).find_map(|voltage_max_v_rms| {
         header.voltage_max_v_rms = voltage_max_v_rms;
-        Reach::of(header).ok()
+        Reach::of(header, ripple).ok()
     })
 }
 

@@ -102,7 +102,7 @@ pub use played_finger::PlayedFinger;
 pub use printable::{Shown, brief, printable, printable_lines};
 pub use profile::{NamedProfile, Profile, ProfileError};
 pub use program::{Bitmap, Program};
-pub use reach::{ROUNDING, Reach, carrier};
+pub use reach::{ROUNDING, Reach};
 pub use scenario::{
     Action, Cause, Condition, Expectation, LineDamage, Scenario, ScenarioCommand, ScenarioFault, StraightStroke,
 };

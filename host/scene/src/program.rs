@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use frixel_layers::{FingerLaw, Header, Point, Record, features_of};
+use frixel_model::{Carrier, FrictionLaw, ParameterError};
 use frixel_wire::scene::bitmap_crc32;
 
 use super::LayerSetting;
@@ -33,8 +34,8 @@ pub struct Program {
     pub layers: LayerMap,
     /// The range of friction that the drive can render.
     pub reach: Reach,
-    /// Ticks in half a carrier period.
-    pub half_period_ticks: u32,
+    /// The carrier behind the lag of the board's amplifier.
+    pub carrier: Carrier,
     /// The finger that the program is compiled for.
     pub finger: PlayedFinger,
     /// Whether friction out of reach is clamped by the scene's `saturate = true`.
@@ -44,6 +45,16 @@ pub struct Program {
 }
 
 impl Program {
+    /// Mean friction under the carrier, by rms voltage. The world's finger has that of [`Header::friction_law`] in
+    /// every tick instead.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Header::friction_law`]; never for a compiled program.
+    pub fn mean_friction(&self) -> Result<FrictionLaw, ParameterError> {
+        Ok(self.header.friction_law()?.under_carrier(self.carrier.ripple()))
+    }
+
     /// Whether the program is a draft, which only previews and the in-process simulator play. Every output marks it.
     pub fn is_draft(&self) -> bool {
         self.refusals().next().is_some()

@@ -1,10 +1,7 @@
 //! The friction that a drive can render on a finger.
 
 use frixel_layers::Header;
-use frixel_model::{
-    Carrier, ContactModel, Finger, FrictionLaw, InverseTable, LawError, ParameterError, TableError, Waveform,
-};
-use frixel_wire::hello::BoardLimits;
+use frixel_model::{ContactModel, Finger, FrictionLaw, InverseTable, LawError, ParameterError, Ripple, TableError};
 use thiserror::Error;
 
 /// Relative tolerance for friction beyond the reach: the rounding error of `f32`.
@@ -34,17 +31,19 @@ pub(super) enum ReachError {
 }
 
 impl Reach {
-    /// Computes the reach from the finger, coating and rms voltage of a header, with the board's `f32` numbers.
-    pub(super) fn of(header: &Header) -> Result<Self, ReachError> {
-        let law = header.friction_law().map_err(ReachError::Contact)?;
+    /// Computes the reach from the finger, coating and rms voltage of a header under a carrier, with the board's `f32`
+    /// numbers.
+    pub(super) fn of(header: &Header, ripple: Ripple) -> Result<Self, ReachError> {
+        let law = header.friction_law().map_err(ReachError::Contact)?.under_carrier(ripple);
         let voltage_max_v_rms = f64::from(header.voltage_max_v_rms);
-        if let FrictionLaw::Contact(contact) = law {
-            let contact_m = contact.state(voltage_max_v_rms).map_or(f64::INFINITY, |state| state.contact_radius_m);
+        if let FrictionLaw::Contact(carried) = law {
+            let contact_m =
+                carried.contact().state(voltage_max_v_rms).map_or(f64::INFINITY, |state| state.contact_radius_m);
             if contact_m > f64::from(header.finger_radius_m) {
                 return Err(ReachError::TooWide { contact_m });
             }
         }
-        check_table(header)?;
+        check_table(header, ripple)?;
         Ok(Self {
             natural_friction_n: law.natural_friction_n(),
             electric_friction_max_n: law.electric_friction_n(voltage_max_v_rms),
@@ -64,7 +63,7 @@ impl Reach {
 }
 
 /// Computes the table as the board does at the commit of a scene.
-fn check_table(header: &Header) -> Result<(), ReachError> {
+fn check_table(header: &Header, ripple: Ripple) -> Result<(), ReachError> {
     let voltage_max_v_rms = header.voltage_max_v_rms;
     if let Some(law) = &header.law {
         let table = InverseTable::of_law(law.exponent(), law.points(), voltage_max_v_rms, f32::INFINITY);
@@ -76,13 +75,7 @@ fn check_table(header: &Header) -> Result<(), ReachError> {
         friction_coefficient: header.friction_coefficient,
     };
     let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
-    InverseTable::of_finger(&finger, gap_m, normal_load_n, voltage_max_v_rms, f32::INFINITY)
+    InverseTable::of_finger(&finger, gap_m, normal_load_n, ripple, voltage_max_v_rms, f32::INFINITY)
         .map(|_| ())
         .map_err(|_: TableError| ReachError::Table)
-}
-
-/// The carrier of a scene on a board, in the board's arithmetic.
-pub fn carrier(waveform: Waveform, half_period_ticks: u32, tick_hz: u32, limits: &BoardLimits) -> Carrier {
-    let half_period_s = (f64::from(half_period_ticks) / f64::from(tick_hz)) as f32;
-    Carrier { waveform, half_period_s, half_period_ticks, edge_time_constant_s: limits.edge_time_constant_s }
 }

@@ -8,6 +8,7 @@ use super::file::Scene;
 use super::finger::{Elasticity, Evidence};
 use super::log::Log;
 use super::mistake::FitMistake;
+use super::program::Program;
 use super::reach::Reach;
 use super::springs::SpringFit;
 use super::warning::Warning;
@@ -148,15 +149,18 @@ impl Voltage {
     }
 
     /// The limits of [drive] to raise, with the smallest whole volts that reach an electric friction; empty if other
-    /// limits prevent it. `header` is that of the compiled scene.
-    pub(super) fn raised_for(&self, scene: &Scene, header: &Header, friction_n: f64) -> Vec<(&'static str, f64)> {
+    /// limits prevent it. `program` is the compiled scene.
+    pub(super) fn raised_for(&self, scene: &Scene, program: &Program, friction_n: f64) -> Vec<(&'static str, f64)> {
+        let header = &program.header;
+        let ripple = program.carrier.ripple();
         let reaches = |v_rms: f64| {
             let gap_m = f64::from(header.effective_gap_m);
             // A soft finger has other springs at another voltage.
             let springs =
                 SpringFit::of(scene.finger(), gap_m, v_rms).ok().filter(|springs| springs.mistake().is_none())?;
             let stiffness_pa_per_m = springs.stiffness_pa_per_m as f32;
-            let reach = Reach::of(&Header { voltage_max_v_rms: v_rms as f32, stiffness_pa_per_m, ..*header }).ok()?;
+            let header = Header { voltage_max_v_rms: v_rms as f32, stiffness_pa_per_m, ..*header };
+            let reach = Reach::of(&header, ripple).ok()?;
             Some(reach.electric_friction_max_n >= friction_n)
         };
         let (least, most) = (self.max_v_rms.ceil() as u32, self.hard_max_v_rms.floor() as u32);

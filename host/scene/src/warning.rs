@@ -200,7 +200,7 @@ pub(super) fn of(scene: &Scene, program: &Program) -> Vec<Warning> {
         return warnings;
     };
     // The law is valid: the reach was computed from it.
-    if let Ok(law) = program.header.friction_law() {
+    if let Ok(law) = program.mean_friction() {
         let measured_n = (1.0 + ROUNDING) * law.electric_friction_n(voltage_max_v_rms);
         if let Some(needed_n) = demand_above(program, measured_n) {
             let voltage_v_rms = digits(law.voltage_v_rms(needed_n), f64::round);

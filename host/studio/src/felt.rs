@@ -113,7 +113,9 @@ fn in_mm(place_m: Option<[f32; 2]>) -> [f32; 2] {
 /// Radius of the contact at a voltage by the model, m; not-a-number for a friction that was measured.
 fn contact_radius_m(law: &FrictionLaw, voltage_v_rms: f64) -> f64 {
     match law {
-        FrictionLaw::Contact(contact) => contact.state(voltage_v_rms).map_or(f64::NAN, |state| state.contact_radius_m),
+        FrictionLaw::Contact(carried) => {
+            carried.contact().state(voltage_v_rms).map_or(f64::NAN, |state| state.contact_radius_m)
+        }
         FrictionLaw::Empirical(_) => f64::NAN,
     }
 }

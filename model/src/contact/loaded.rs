@@ -42,6 +42,16 @@ impl<T: Real> LoadedContact<T> {
         self.natural_friction_n
     }
 
+    /// Normal load in newtons. Two roundings.
+    pub(crate) fn normal_load_n(&self) -> T {
+        self.natural_friction_n / (self.contact.friction_scale_n / self.contact.load_scale_n)
+    }
+
+    /// `V/V*` of a voltage, and `n`.
+    pub(super) fn scaled(&self, voltage_v_rms: T) -> (T, T) {
+        (voltage_v_rms / self.contact.voltage_scale_v_rms, self.n)
+    }
+
     /// Electric friction `x = F_T - mu F_N` in newtons at a finite rms voltage of zero or more, Eqs. (43), (21).
     ///
     /// [`ContactModel::state`] computes the same value and checks its argument and result.

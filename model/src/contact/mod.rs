@@ -1,5 +1,6 @@
 //! A Winkler-Fuss finger on a coating: the model's scales, and the quantities that follow from them in closed form.
 
+mod carried;
 pub(crate) mod curve;
 mod finite;
 mod loaded;
@@ -8,6 +9,7 @@ mod pulled;
 
 use core::f64::consts::PI;
 
+pub use carried::CarriedContact;
 pub use finite::FiniteContact;
 pub use loaded::LoadedContact;
 pub use lower::LowerBound;

@@ -2,7 +2,8 @@
 
 use core::mem::replace;
 
-use crate::{LoadedContact, Real};
+use crate::double_single::DoubleSingle;
+use crate::{CarriedContact, LoadedContact, Real};
 
 /// Position of the inner points between -1 and 1 that minimises the product of distances, to 1e-8.
 const INNER: f32 = core::f32::consts::SQRT_2 - 1.0;
@@ -25,6 +26,13 @@ pub(crate) trait Curve<T> {
 impl<T: Real> Curve<T> for LoadedContact<T> {
     #[inline]
     fn voltage_v_rms(&self, electric_friction_n: T) -> T {
+        Self::voltage_v_rms(self, electric_friction_n)
+    }
+}
+
+impl Curve<DoubleSingle> for CarriedContact<DoubleSingle> {
+    #[inline]
+    fn voltage_v_rms(&self, electric_friction_n: DoubleSingle) -> DoubleSingle {
         Self::voltage_v_rms(self, electric_friction_n)
     }
 }

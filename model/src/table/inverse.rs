@@ -7,7 +7,7 @@ use super::TableError;
 use super::float::{FRICTION_MAX_N, RowGrid, round_down};
 use super::interpolation::{Curve, Point};
 use crate::double_single::DoubleSingle;
-use crate::{EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real};
+use crate::{CarriedContact, EmpiricalLaw, Finger, LawError, LawPoint, LoadedContact, Real, Ripple};
 
 /// Number of rows in a table: 31.5 octaves, enough for 200 V down to 1 V if friction grows as the fourth power of the
 /// voltage.
@@ -48,7 +48,8 @@ pub struct InverseTable {
 
 impl InverseTable {
     /// Bound on the relative error in electric friction, proven for every finger, coating and load of zero or more
-    /// (9.9e-6, from `reference/table_constants.py`).
+    /// (9.9e-6, from `reference/table_constants.py`). Under a ripple it is not proven, but holds for every carrier, finger
+    /// and load of `tests/carried.rs`.
     ///
     /// It holds from the friction at 1 V, or at 1/200 of the largest voltage if that is lower, to the friction at the
     /// largest voltage. For the example finger between 1 V and 200 V, the largest error over every `f32` is 3.6e-6
@@ -77,21 +78,25 @@ impl InverseTable {
             return Err(TableError::Voltage);
         }
         let voltage_max_v_rms = DoubleSingle::from_f64(voltage_max_v_rms);
-        Self::in_double_single(contact.in_double_single(), voltage_max_v_rms, up_to_n)
+        let contact = contact.in_double_single().under_carrier(Ripple::NONE);
+        let mut table = Self::EMPTY;
+        table.begin_in_double_single(contact, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
+        Ok(table)
     }
 
-    /// Builds the same table from the parameters sent to a board: finger, effective gap of the coating in metres,
-    /// normal load in newtons, largest voltage in volts rms, and the truncation as in [`Self::build_up_to`]. Does not
-    /// use `f64`.
+    /// Builds the table of mean friction under a carrier from the parameters sent to a board: finger, effective gap of
+    /// the coating in metres, normal load in newtons, the carrier's ripple, largest voltage in volts rms, and the
+    /// truncation as in [`Self::build_up_to`]. Does not use `f64`.
     pub fn of_finger(
         finger: &Finger<f32>,
         gap_m: f32,
         normal_load_n: f32,
+        ripple: Ripple,
         voltage_max_v_rms: f32,
         up_to_n: f32,
     ) -> Result<Self, TableError> {
         let mut table = Self::EMPTY;
-        table.begin(finger, gap_m, normal_load_n, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
+        table.begin(finger, gap_m, normal_load_n, ripple, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
         Ok(table)
     }
 
@@ -103,6 +108,7 @@ impl InverseTable {
         finger: &Finger<f32>,
         gap_m: f32,
         normal_load_n: f32,
+        ripple: Ripple,
         voltage_max_v_rms: f32,
         up_to_n: f32,
     ) -> Result<InverseTableFilling, TableError> {
@@ -110,7 +116,7 @@ impl InverseTable {
             return Err(TableError::Voltage);
         }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        self.begin_in_double_single(contact, DoubleSingle::from(voltage_max_v_rms), up_to_n)
+        self.begin_in_double_single(contact.under_carrier(ripple), DoubleSingle::from(voltage_max_v_rms), up_to_n)
     }
 
     /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The
@@ -153,19 +159,9 @@ impl InverseTable {
         Ok(EmpiricalTableFilling(Filling { curve, rows: 0..end, start }))
     }
 
-    fn in_double_single(
-        contact: LoadedContact<DoubleSingle>,
-        voltage_max_v_rms: DoubleSingle,
-        up_to_n: f32,
-    ) -> Result<Self, TableError> {
-        let mut table = Self::EMPTY;
-        table.begin_in_double_single(contact, voltage_max_v_rms, up_to_n)?.fill(&mut table, ROWS)?;
-        Ok(table)
-    }
-
     fn begin_in_double_single(
         &mut self,
-        contact: LoadedContact<DoubleSingle>,
+        contact: CarriedContact<DoubleSingle>,
         voltage_max_v_rms: DoubleSingle,
         up_to_n: f32,
     ) -> Result<InverseTableFilling, TableError> {
@@ -237,7 +233,7 @@ impl InverseTable {
 
 /// The remaining computation of an [`InverseTable`]; created by [`InverseTable::begin`].
 #[derive(Clone, Debug)]
-pub struct InverseTableFilling(Filling<LoadedContact<DoubleSingle>>);
+pub struct InverseTableFilling(Filling<CarriedContact<DoubleSingle>>);
 
 impl InverseTableFilling {
     /// Number of rows that are still to be computed.

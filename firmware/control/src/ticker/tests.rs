@@ -1,7 +1,7 @@
 //! Tests the tick as the last line of defence: it stays within the board's ceilings for all coefficients and orders.
 
 use frixel_layers::{Blend, Constant, Header, Layer, Record, Region, Waveform};
-use frixel_model::{Finger as FingerModel, InverseTable};
+use frixel_model::{Finger as FingerModel, InverseTable, Ripple};
 use frixel_testkit::HEADER;
 use frixel_wire::fault::Flags;
 use proptest::prelude::*;
@@ -28,8 +28,9 @@ fn active(carrier: CarrierTiming, slew_step_v: f32, voltage_max_v_rms: f32, host
     let Header { finger_radius_m, stiffness_pa_per_m, friction_coefficient, .. } = HEADER;
     let finger = FingerModel { radius_m: finger_radius_m, stiffness_pa_per_m, friction_coefficient };
     let mut active = Active::new();
+    let Header { effective_gap_m, normal_load_n, .. } = HEADER;
     active.table =
-        InverseTable::of_finger(&finger, HEADER.effective_gap_m, HEADER.normal_load_n, 150.0, f32::INFINITY).unwrap();
+        InverseTable::of_finger(&finger, effective_gap_m, normal_load_n, Ripple::NONE, 150.0, f32::INFINITY).unwrap();
     let layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
     active.layers.begin(&HEADER, core::iter::empty());

@@ -14,7 +14,7 @@ use super::bitmap_directory::Directory;
 /// Grid cells whose cost is computed per step of loading.
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table computed per step of loading.
-const ROWS_PER_STEP: usize = 3;
+const ROWS_PER_STEP: usize = 2;
 /// Rows of an empirical law's table computed per step of loading.
 const LAW_ROWS_PER_STEP: usize = 2;
 
@@ -100,7 +100,7 @@ impl Loading {
                 let Active { table, voltage_max_v_rms, .. } = active;
                 let begun = match header.law() {
                     Some(law) => begin_law_table(table, header, law, *voltage_max_v_rms).map(Self::LawRows),
-                    None => begin_table(table, header, *voltage_max_v_rms).map(Self::Rows),
+                    None => begin_table(table, header, board, *voltage_max_v_rms).map(Self::Rows),
                 };
                 begun.map_err(Refusal::Config)?
             }
@@ -128,7 +128,7 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
         return Err(Refusal::FeatureDisabled { layer: ConfigRefusal::WHOLE_SCENE });
     }
     header.check(&board.limits, board.tick_hz).map_err(Refusal::Config)?;
-    (active.carrier, active.voltage_max_v_rms) = carrier(header, board).map_err(Refusal::Config)?;
+    (active.carrier, active.voltage_max_v_rms) = timing(header, board).map_err(Refusal::Config)?;
     active.slew_step_v = header.slew_v_per_s * board.tick_period_s();
     active.host_timeout_ticks = board.ticks(header.host_timeout_s);
     active.prediction_off = !header.prediction;
@@ -136,20 +136,21 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     Ok(())
 }
 
-/// The carrier of a scene, and its largest rms voltage within all limits.
-fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
-    let limits = &board.limits;
-    let half_period_ticks = board.ticks(0.5 / header.carrier_hz);
-    let carrier = Carrier {
-        // Without the feature, this lets the compiler omit the sine. `load_drive` has refused such a scene.
-        waveform: match header.waveform {
-            Waveform::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
-            _ => Waveform::Square,
-        },
-        half_period_s: half_period_ticks as f32 * board.tick_period_s(),
-        half_period_ticks,
-        edge_time_constant_s: limits.edge_time_constant_s,
+/// The carrier of a scene.
+fn carrier(header: &Header, board: &Board) -> Carrier {
+    // Without the feature, this lets the compiler omit the sine. `load_drive` has refused such a scene.
+    let waveform = match header.waveform {
+        Waveform::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
+        _ => Waveform::Square,
     };
+    Carrier { waveform, ..header.carrier(&board.limits, board.tick_hz) }
+}
+
+/// The timing of a scene's carrier, and its largest rms voltage within all limits.
+fn timing(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
+    let limits = &board.limits;
+    let carrier = carrier(header, board);
+    let half_period_ticks = carrier.half_period_ticks;
     let peak_per_rms = carrier.peak_per_rms();
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
 
@@ -179,7 +180,7 @@ fn carrier(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), Confi
 ///
 /// A carrier whose current is too large is refused.
 pub fn voltage_max_v_rms(header: &Header, board: &Board) -> Result<f32, Refusal> {
-    carrier(header, board).map(|(_, voltage_max_v_rms)| voltage_max_v_rms).map_err(Refusal::Config)
+    timing(header, board).map(|(_, voltage_max_v_rms)| voltage_max_v_rms).map_err(Refusal::Config)
 }
 
 /// Number of rows of a scene's inverse table that hold a piece of the curve.
@@ -191,16 +192,24 @@ pub struct TableRows {
     pub whole: usize,
 }
 
-/// Begins the inverse table of a scene's finger, coating and load, up to the scene's largest target friction.
+/// Begins the inverse table of a scene's finger, coating, load and carrier, up to the scene's largest target friction.
 fn begin_table(
     table: &mut InverseTable,
     header: &Header,
+    board: &Board,
     voltage_max_v_rms: f32,
 ) -> Result<InverseTableFilling, ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
     table
-        .begin(&finger(header), effective_gap_m, normal_load_n, voltage_max_v_rms, max_n)
+        .begin(
+            &finger(header),
+            effective_gap_m,
+            normal_load_n,
+            carrier(header, board).ripple(),
+            voltage_max_v_rms,
+            max_n,
+        )
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
@@ -279,7 +288,7 @@ pub fn table_rows(scene: &Scene, board: &Board) -> Result<TableRows, Refusal> {
         let mut table = InverseTable::EMPTY;
         let begun = match header.law() {
             Some(law) => begin_law_table(&mut table, header, law, voltage_max_v_rms).map(|filling| filling.rows()),
-            None => begin_table(&mut table, header, voltage_max_v_rms).map(|filling| filling.rows()),
+            None => begin_table(&mut table, header, board, voltage_max_v_rms).map(|filling| filling.rows()),
         };
         begun.map_err(Refusal::Config)
     };

@@ -107,6 +107,6 @@ fn felt_texture(found: &LayerVerdict) -> Option<&Texture> {
 /// The voltage at the 95th percentile of the friction; `None` at natural friction.
 fn voltage_v_rms(found: &LayerVerdict, program: &Program) -> Option<f64> {
     let electric_n = found.scene.contrast.to_n - program.reach.natural_friction_n;
-    let law = program.header.friction_law().ok().filter(|_| electric_n > 0.0)?;
+    let law = program.mean_friction().ok().filter(|_| electric_n > 0.0)?;
     Some(law.voltage_v_rms(electric_n))
 }

@@ -4,7 +4,7 @@ use frixel_layers::Waveform;
 use frixel_model::{FrictionLaw, ParameterError};
 use frixel_wire::hello::BoardLimits;
 
-use frixel_scene::{Program, carrier};
+use frixel_scene::Program;
 
 /// The full model, driven through an ideal amplifier and a DAC with its steps.
 #[derive(Debug)]
@@ -18,13 +18,12 @@ pub(super) struct Inversion {
 }
 
 impl Inversion {
-    pub(super) fn new(program: &Program, limits: &BoardLimits, tick_hz: u32) -> Result<Self, ParameterError> {
+    pub(super) fn new(program: &Program, limits: &BoardLimits) -> Result<Self, ParameterError> {
         let header = &program.header;
-        let carrier = carrier(header.waveform, program.half_period_ticks, tick_hz, limits);
-        let peak_per_rms = f64::from(carrier.peak_per_rms());
+        let peak_per_rms = f64::from(program.carrier.peak_per_rms());
         let codes_per_v_peak = f64::from(i16::MAX) / f64::from(limits.full_scale_v_peak);
         Ok(Self {
-            law: program.header.friction_law()?,
+            law: program.mean_friction()?,
             waveform: header.waveform,
             codes_per_v_rms: peak_per_rms * codes_per_v_peak,
             electric_friction_max_n: program.reach.electric_friction_max_n,

@@ -243,14 +243,14 @@ impl PlayListener for Recorder {
         self.markers.name_layers(program);
         self.mark(MarkedEvent::SceneReplaced);
         let reference = Reference::at_start(program).along_stroke();
-        let inversion = Inversion::new(program, limits, self.tick_hz)?;
+        let inversion = Inversion::new(program, limits)?;
         if let Some(comparison) = &mut self.comparison {
             self.judged = None;
             (comparison.reference, comparison.inversion) = (reference, inversion);
-            comparison.metrics.set_half_period(program.half_period_ticks);
+            comparison.metrics.set_half_period(program.carrier.half_period_ticks);
         } else {
             let (stream, turning) = (Stream::new(self.tick_hz), Turning::default());
-            let metrics = Metrics::new(program.half_period_ticks);
+            let metrics = Metrics::new(program.carrier.half_period_ticks);
             self.comparison = Some(Comparison { reference, inversion, stream, turning, metrics });
         }
         Ok(())

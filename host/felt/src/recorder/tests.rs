@@ -246,7 +246,7 @@ fn the_reference_goes_through_the_finger_that_felt() {
 
 #[test]
 fn a_code_of_zero_is_no_friction_whatever_voltage_was_commanded() {
-    let mut inversion = Inversion::new(&program(CONSTANT), &LIMITS, TICK_HZ).unwrap();
+    let mut inversion = Inversion::new(&program(CONSTANT), &LIMITS).unwrap();
     assert_eq!(inversion.electric_friction_n(100.0, 0).to_bits(), 0);
     let expected_n = inversion.without_steps_n(100.0);
     let with_steps_n = inversion.electric_friction_n(100.0, -inversion.code_of(100.0));

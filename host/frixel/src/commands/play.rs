@@ -26,7 +26,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
-use clap::{Args, Command, FromArgMatches};
+use clap::{Args, Command, FromArgMatches, ValueEnum};
 
 use crate::output::{Effects, Report};
 
@@ -76,9 +76,9 @@ pub(super) struct PlayArgs {
     /// Leave out load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     #[arg(long)]
     ideal: bool,
-    /// Simulate skin through which no charge leaks. By default it leaks below 250 Hz.
-    #[arg(long, conflicts_with = "ideal", help_heading = RARE)]
-    no_leakage: bool,
+    /// Simulated skin: `no-leakage` of charge, friction by `mean-square` (docs/inside/evidence.md).
+    #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', hide_possible_values = true, help_heading = RARE)]
+    skin: Vec<Skin>,
     /// Seed of a simulated person, for whom the scene was not made.
     #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true, help_heading = RARE)]
     finger_seed: Option<u64>,
@@ -113,6 +113,15 @@ pub(super) struct PlayArgs {
     stream: StreamArgs,
 }
 
+/// Properties of the simulated skin on which sources disagree, or that are unmeasured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Skin {
+    /// Charge does not leak through the skin. By default it leaks below 250 Hz.
+    NoLeakage,
+    /// Friction follows the mean squared voltage of the carrier. By default it follows that of each tick.
+    MeanSquare,
+}
+
 impl PlayArgs {
     /// The options of a play on the simulator in an ideal world, into a folder.
     pub(super) fn ideal(scene: &Path, out: &Path) -> Result<Self> {
@@ -130,7 +139,8 @@ impl PlayArgs {
             seconds: self.seconds,
             seed: self.seed,
             ideal: self.ideal,
-            no_leakage: self.no_leakage,
+            no_leakage: self.skin.contains(&Skin::NoLeakage),
+            mean_square: self.skin.contains(&Skin::MeanSquare),
             finger_seed: self.finger_seed,
             rows_hz: self.csv_hz,
             finger: None,
@@ -158,9 +168,14 @@ impl PlayArgs {
         }
     }
 
+    /// Whether an option changes the simulated world.
+    fn changes_world(&self) -> bool {
+        self.ideal || !self.skin.is_empty() || self.finger_seed.is_some() || self.touch.is_given()
+    }
+
     /// Effects of the simulated world beyond the contact model.
     fn effects(&self) -> Effects {
-        match (self.ideal, self.no_leakage) {
+        match (self.ideal, self.skin.contains(&Skin::NoLeakage)) {
             (true, _) => Effects::None,
             (false, true) => Effects::AllButLeakage,
             (false, false) => Effects::All,

@@ -136,7 +136,7 @@ impl Effects {
             Self::None => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
             Self::AllButLeakage => (
                 "without-leakage",
-                "with load changes, noise, pre-sliding, offsets and lost touch reports; --no-leakage switches leakage off",
+                "with load changes, noise, pre-sliding, offsets and lost touch reports; --skin no-leakage switches leakage off",
             ),
             Self::All => (
                 "realistic",

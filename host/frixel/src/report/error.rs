@@ -3,7 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
+use frixel_hil_sim::StrokeError;
 use frixel_model::ParameterError;
+use frixel_play::SimulationError;
+use frixel_scene::CompileError;
 use thiserror::Error;
 
 /// Why a report could not be written.
@@ -24,6 +27,15 @@ pub(crate) enum ReportError {
     /// The numbers of a plot could not be read or written.
     #[error("the numbers of a plot: {0}")]
     Numbers(#[from] csv::Error),
+    /// A constant could not be compiled.
+    #[error("a constant: {0}")]
+    Compile(#[from] CompileError),
+    /// A constant could not be played.
+    #[error("a constant: {0}")]
+    Simulation(#[from] SimulationError),
+    /// The stroke of a constant could not be made.
+    #[error("a constant: {0}")]
+    Stroke(#[from] StrokeError),
     /// The model rejected a parameter.
     #[error("the contact model: {0}")]
     Parameter(#[from] ParameterError),

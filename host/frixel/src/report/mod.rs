@@ -1,9 +1,10 @@
-//! `frixel report`: three questions on the first screen of a page, each with a small table and its plot. What is the
+//! `frixel report`: four questions on the first screen of a page, each with a small table and its plot. What is the
 //! error against the run time? How stable is the model in stiff and extreme cases? Which of the board's resources does
-//! a scene not use?
+//! a scene not use? Is mean friction right under each carrier?
 //!
 //! [`write()`] creates a folder with a self-contained `index.html` and the numbers behind each plot as CSV.
 
+mod carrier;
 mod counts;
 mod error;
 mod finger;
@@ -49,6 +50,11 @@ pub(crate) fn write(
     let counts = bench.map_or_else(Counts::committed, Counts::read)?;
     let _locked = OutputFolder::open(folder)?;
     let drawn = DrawnFinger::of(subject);
-    let sections = [run_time::section(&drawn, &counts)?, stability::section()?, scene::section(subject, &counts)];
+    let sections = [
+        run_time::section(&drawn, &counts)?,
+        stability::section()?,
+        scene::section(subject, &counts),
+        carrier::section()?,
+    ];
     Page { finger: &drawn.words, counts: &counts.origin(), sections: &sections }.write(folder, inputs)
 }

@@ -1,4 +1,4 @@
-//! `index.html`: three questions side by side, each with its plot and its table, and explanations below.
+//! `index.html`: questions side by side, each with its plot and its table, and explanations below.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -24,7 +24,8 @@ const SAMPLE_HZ: u32 = 4_000;
 const PLACE_HZ: f64 = 250.0;
 /// Finger for which the board computes voltages. Any finger will do, because only the voltages count.
 const BOARD_FINGER: Finger<f64> = Finger::<f64>::EXAMPLE;
-const BOARD_GAP_M: f64 = 10e-6;
+/// So large that electric friction is a square of the voltage, whose mean is the same under every carrier.
+const BOARD_GAP_M: f64 = 100e-6;
 const BOARD_LOAD_N: f64 = 0.5;
 /// Highest voltage in a calibration or an experiment with a person, V rms.
 pub const VOLTAGE_MAX_V_RMS: f64 = 150.0;

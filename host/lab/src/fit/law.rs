@@ -5,7 +5,7 @@
 
 use core::f64::consts::PI;
 
-use frixel_model::{Contact, Finger, ParameterError, VACUUM_PERMITTIVITY_F_PER_M};
+use frixel_model::{Contact, Finger, ParameterError, Ripple, VACUUM_PERMITTIVITY_F_PER_M};
 
 /// Radius of curvature of every fitted finger, in metres: a convention, which friction data cannot contradict.
 pub(super) const CONVENTIONAL_RADIUS_M: f64 = 8e-3;
@@ -14,6 +14,9 @@ pub(super) const CONVENTIONAL_STIFFNESS_PA_PER_M: f64 = 1.8e7;
 
 /// Voltage at which the power law states its attraction, in volts rms.
 pub(super) const REFERENCE_V_RMS: f64 = 150.0;
+
+/// Steps of the search for a coupling by its mean attraction.
+const MEAN_STEPS: usize = 12;
 
 /// The one number that friction data give about electrode, skin and gap, in `sqrt(N)/V^2`:
 /// `coupling = eps0/(2 g^2) sqrt(pi R/k)`.
@@ -35,6 +38,21 @@ impl Coupling {
     pub(super) fn gap_m(self) -> f64 {
         let shape = (PI * CONVENTIONAL_RADIUS_M / CONVENTIONAL_STIFFNESS_PA_PER_M).sqrt();
         (VACUUM_PERMITTIVITY_F_PER_M / (2.0 * self.0) * shape).sqrt()
+    }
+
+    /// The coupling whose mean attraction under a carrier is the attraction of this one at a constant voltage; `None` if
+    /// it is outside of the model's range.
+    ///
+    /// A fit describes measured means. A profile states the contact that has these means.
+    pub(super) fn under_carrier(self, ripple: Ripple, voltage_v_rms: f64, normal_load_n: f64) -> Option<Self> {
+        let attraction_n = |coupling: Self, ripple| {
+            let contact = coupling.contact().and_then(|contact| contact.under_load(normal_load_n)).ok()?;
+            Some(contact.under_carrier(ripple).electric_friction_n(voltage_v_rms))
+        };
+        let measured_n = attraction_n(self, Ripple::NONE)?;
+        // The attraction is nearly proportional to the coupling: each step takes nine tenths of the difference.
+        (0..MEAN_STEPS)
+            .try_fold(self, |coupling, _| Some(Self(coupling.0 * measured_n / attraction_n(coupling, ripple)?)))
     }
 
     /// The contact of a finger of conventional radius and stiffness, and of friction coefficient 1, so that its

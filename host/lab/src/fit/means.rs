@@ -293,7 +293,14 @@ mod tests {
     const ERROR_N: f64 = 4e-3;
 
     fn settings() -> Settings {
-        Settings { voltage_v_rms: 150.0, normal_load_n: None, coating_gap_m: 1e-6 / 3.9, without: Vec::new(), seed: 1 }
+        Settings {
+            voltage_v_rms: 150.0,
+            normal_load_n: None,
+            coating_gap_m: 1e-6 / 3.9,
+            ripple: frixel_model::Ripple::NONE,
+            without: Vec::new(),
+            seed: 1,
+        }
     }
 
     fn truth_n(voltage_v_rms: f64, load_n: f64) -> f64 {

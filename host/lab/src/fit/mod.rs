@@ -45,6 +45,8 @@ pub(crate) mod turns;
 mod verdict;
 mod zero;
 
+use frixel_hil_sim::Board;
+use frixel_model::{Carrier, Ripple, Waveform};
 use frixel_play::{GoesOn, TO_THE_END};
 
 pub use crate::bootstrap::Estimate;
@@ -81,10 +83,22 @@ pub struct Settings {
     pub normal_load_n: Option<f64>,
     /// Effective gap of the screen's coating, in metres: the rest of the fitted gap is the skin's.
     pub coating_gap_m: f64,
+    /// Ripple of the carrier under which friction was measured.
+    pub ripple: Ripple,
     /// Names of strokes to leave out.
     pub without: Vec<String>,
     /// Seed of the bootstrap.
     pub seed: u64,
+}
+
+/// Lowest and highest carrier frequency of a measurement, in Hz.
+pub const CARRIERS_HZ: [f64; 2] = [125.0, 5e3];
+
+/// Ripple of the carrier of a measurement, of a frequency within [`CARRIERS_HZ`], with the edges of the reference board.
+pub fn measured_ripple(waveform: Waveform, carrier_hz: f64) -> Ripple {
+    let Board { tick_hz, limits, .. } = &Board::SIMULATOR;
+    let half_period_ticks = (0.5 * f64::from(*tick_hz) / carrier_hz).round() as u32;
+    Carrier::new(waveform, half_period_ticks, *tick_hz, limits.edge_time_constant_s).ripple()
 }
 
 /// A fitted finger.
@@ -105,7 +119,8 @@ pub struct Fit {
     pub voltage_exponent: Exponent,
     /// Exponent of the load, likewise.
     pub load_exponent: Exponent,
-    /// Effective gap of coating and skin for a finger of conventional radius and stiffness, in metres.
+    /// Effective gap of coating and skin for a finger of conventional radius and stiffness, in metres. Its mean friction
+    /// under the carrier of the measurement is the fitted one at the highest voltage of the data.
     pub gap_m: f64,
     /// The part of the gap that is not coating, in metres.
     pub skin_gap_m: f64,
@@ -263,7 +278,8 @@ fn judged(fitted_data: &FittedData, settings: &Settings) -> Result<Fit, FitError
     let voltage_exponent = judge.voltage(normal_load_n, voltage_max_v_rms)?;
     let load_exponent = judge.load(normal_load_n)?;
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
-    let gap_m = Coupling(coupling.value).gap_m();
+    let in_profile = Coupling(coupling.value).under_carrier(settings.ripple, voltage_max_v_rms, normal_load_n);
+    let gap_m = in_profile.ok_or(FitError::NotConverged)?.gap_m();
     let fit = Fit {
         friction_coefficient: fitted_data.friction_coefficient(|replicate| &replicate.contact)?,
         coupling_sqrt_n_per_v2: coupling,

@@ -94,6 +94,7 @@ impl PlayOptions {
         let world = WorldOptions {
             ideal: self.ideal,
             no_leakage: self.no_leakage,
+            mean_square: self.mean_square,
             touch,
             finger: self.finger_seed.map(own_finger).transpose()?,
         };

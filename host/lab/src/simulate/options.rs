@@ -34,6 +34,8 @@ pub struct PlayOptions {
     pub ideal: bool,
     /// Skin through which no charge leaks.
     pub no_leakage: bool,
+    /// Friction that follows the mean squared voltage of the carrier, not that of each tick.
+    pub mean_square: bool,
     /// Seed of a simulated person, whose finger the board does not know.
     pub finger_seed: Option<u64>,
     /// Rows a second.

@@ -138,7 +138,7 @@ fn a_gain_is_judged_as_if_all_layers_were_on() {
     let before = layers.0.settings.clone();
     let refused = layers.change("B", None, Some(2.0)).expect_err("with A it is out of reach");
     assert!(refused.to_string().starts_with("gain 2 is refused: layer 1 \"A\" and layer 2 \"B\" would"), "{refused}");
-    assert!(refused.to_string().ends_with("give a gain from -1 to 1.59"), "{refused}");
+    assert!(refused.to_string().ends_with("give a gain from -1 to 1.62"), "{refused}");
     assert_eq!(layers.0.settings, before);
     for layer in ["A", "B"] {
         let on = layers.change(layer, Some(true), None).expect("it is live");

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _frixel
-from ._arguments import each, real, refusal, whole
+from ._arguments import each, number, real, refusal, whole
 from ._arguments import text as checked_text
 from .errors import FitError, ParameterError
 from .profiles import Finger, Screen
@@ -52,6 +52,8 @@ class _Settings:
     empirical: bool
     voltage_v_rms: float
     normal_load_n: float | None
+    carrier_hz: float
+    sine: bool
     without: list[str]
     seed: int
     date: str
@@ -66,6 +68,8 @@ def fit(
     screen: Screen | str | Mapping[str, Any] = "example",
     voltage_v_rms: float = 150.0,
     normal_load_n: float | None = None,
+    carrier_hz: float = 1000.0,
+    waveform: Literal["square", "sine"] = "square",
     without: Sequence[str] = (),
     method: str = "load cell, strokes with the drive switched on and off",
     date: datetime.date | None = None,
@@ -90,6 +94,8 @@ def fit(
         Voltage at which the contact model's electric friction is stated, V rms.
     normal_load_n
         Normal load of the profile, N. Default: the median of the data.
+    carrier_hz, waveform
+        Carrier of the measurement: its frequency, 125 to 5000 Hz, and its shape.
     without
         Names of strokes to leave out.
     method, date
@@ -108,6 +114,8 @@ def fit(
     """
     if law not in ("contact", "empirical"):
         raise refusal("the law", "'contact' or 'empirical'", law)
+    if waveform not in ("square", "sine"):
+        raise refusal("the waveform", "'square' or 'sine'", waveform)
     if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
         raise refusal("data", "a dictionary of columns or a DataFrame", data)
     if not (date is None or isinstance(date, datetime.date)):
@@ -118,6 +126,8 @@ def fit(
         law == "empirical",
         real("voltage_v_rms", voltage_v_rms),
         None if normal_load_n is None else real("normal_load_n", normal_load_n),
+        number("carrier_hz", carrier_hz, 125.0, 5000.0),
+        waveform == "sine",
         [str(name) for name in each("without", without)],
         whole("seed", seed, 0),
         day,

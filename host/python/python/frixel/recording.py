@@ -98,6 +98,7 @@ class Recording(Mapping[str, NDArray[Any]]):
             "touch": play.get("touch"),
             "ideal": play.get("ideal"),
             "leakage": not play["no_leakage"] if "no_leakage" in play else None,
+            "mean_square": play.get("mean_square"),
         }
         given = {name: value for name, value in settings.items() if value is not None}
         return cls({name: np.asarray(values) for name, values in columns.items()}, given, scene, made)

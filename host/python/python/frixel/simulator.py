@@ -43,6 +43,8 @@ class Simulator:
         A world without load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     leakage
         Whether charge leaks through the skin below 250 Hz; measurements disagree (`docs/inside/evidence.md`).
+    mean_square
+        Whether friction follows the mean squared voltage of the carrier, rather than that of each tick; unmeasured.
     rows_per_s
         Rows of the recording per second, a divisor of 40,000.
 
@@ -66,6 +68,7 @@ class Simulator:
         touch: TouchSource | str | int | Mapping[str, Any] | None = None,
         ideal: bool = False,
         leakage: bool = True,
+        mean_square: bool = False,
         rows_per_s: int = 1000,
     ) -> None:
         if not (stroke is None or isinstance(stroke, Stroke)):
@@ -81,6 +84,7 @@ class Simulator:
         self.person = None if person is None else whole("person", person, 0)
         self.touch = None if touch is None else TouchSource.of(touch)
         self.ideal, self.leakage = flag("ideal", ideal), flag("leakage", leakage)
+        self.mean_square = flag("mean_square", mean_square)
         self.rows_per_s = whole("rows_per_s", rows_per_s, 1, _frixel.TICK_HZ)
 
     def run(self, seconds: float | None = None) -> Recording:
@@ -123,6 +127,7 @@ class Simulator:
             "touch": None if self.touch is None else self.touch.name,
             "ideal": self.ideal,
             "leakage": self.leakage,
+            "mean_square": self.mean_square,
             "rows_per_s": self.rows_per_s,
         }
         given = {name: value for name, value in settings.items() if value is not None}

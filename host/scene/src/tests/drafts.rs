@@ -60,7 +60,7 @@ fn drafts_keep_to_the_limits_of_the_drive() {
     assert_eq!(current.refusals().count(), 1);
     assert!((135.0..145.0).contains(&current.reach.voltage_max_v_rms), "{:?}", current.reach);
     let fast = draft(&HEAD.replace("# layers follow", "[carrier]\nfrequency_hz = 6000"));
-    assert_eq!((fast.refusals().count(), fast.half_period_ticks), (1, 4));
+    assert_eq!((fast.refusals().count(), fast.carrier.half_period_ticks), (1, 4));
     let wide = draft(
         "version = 1\n[screen]\nwidth_mm = 100\nheight_mm = 80\n[finger]\nfriction_coefficient = 0.5\n\
                       normal_load_n = 0.5\nradius_mm = 8\nstiffness_pa_per_m = 1.8e7\nskin_gap_um = 0\n",

@@ -130,7 +130,7 @@ fn a_soft_finger_plays_on_springs_that_have_its_friction_at_the_largest_voltage(
     let gap_m = 1e-6 * (1.0 / 3.9 + 4.74);
     let contact = finger.on_gap(gap_m).and_then(|contact| contact.under_load(0.5)).expect("it is a finger");
     let expected_n = frixel_model::ContactModel::state(&contact, 150.0).expect("a state").electric_friction_n;
-    let found_n = near.reach.electric_friction_max_n;
+    let found_n = near.header.friction_law().expect("it is a finger").electric_friction_n(150.0);
     assert!((found_n / expected_n - 1.0).abs() < 1e-6, "{found_n} and not {expected_n}");
 }
 

@@ -12,10 +12,11 @@ use clap::{Args, ValueEnum};
 use frixel_files::{Inputs, OutputFile, commit_all};
 use frixel_lab::fit::{self, DataSummary, Division, EmpiricalFit, Fit, Settings};
 use frixel_lab::table::Reading;
+use frixel_model::Waveform;
 use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile};
 
-use crate::commands::argument::positive;
+use crate::commands::argument::{self, positive};
 use crate::commands::profiles::screen;
 use crate::commands::terminal::{note_understood, print_line, say};
 
@@ -52,6 +53,12 @@ pub(in crate::commands) struct FitArgs {
     /// Normal load of the profile, in newtons. Default: the median of the data.
     #[arg(long, value_name = "N", value_parser = positive)]
     load: Option<f64>,
+    /// Carrier frequency of the measurement, in Hz: 125 to 5000. Default: 1000, as of `frixel finger calibrate`.
+    #[arg(long, value_name = "HZ", default_value_t = 1e3, hide_default_value = true, value_parser = carrier_hz)]
+    carrier_hz: f64,
+    /// The carrier of the measurement was a sine. Default: a square wave.
+    #[arg(long)]
+    sine: bool,
     /// Strokes to leave out, by their names in the column `stroke`.
     #[arg(long, value_name = "STROKE", value_delimiter = ',')]
     without: Vec<String>,
@@ -124,6 +131,7 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
         voltage_v_rms: args.voltage.unwrap_or(STATED_V_RMS),
         normal_load_n: args.load,
         coating_gap_m: screen.coating_gap_m(),
+        ripple: fit::measured_ripple(if args.sine { Waveform::Sine } else { Waveform::Square }, args.carrier_hz),
         without: args.without.clone(),
         seed: args.seed,
     };
@@ -145,6 +153,11 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
         Some(outputs) => say(&outputs.profile, format_args!("{text}\n  {:<22} {}", "wrote", outputs.names(args.law))),
         None => print_line(text),
     }
+}
+
+fn carrier_hz(text: &str) -> Result<f64, String> {
+    let [least, most] = fit::CARRIERS_HZ;
+    argument::number(text, least..=most, &format!("a number of Hz from {least} to {most}"))
 }
 
 /// How friction was measured, as far as the data show.
@@ -177,7 +190,11 @@ impl Outputs {
 
     fn write(&self, args: &FitArgs, data: &Path, fit: &Fitted, screen: &str) -> Result<()> {
         let simulated = if fit.data().preparation.is_simulated { "simulated " } else { "" };
-        let method = args.method.clone().unwrap_or_else(|| format!("{simulated}{}", method_of(fit.data().division)));
+        let method = args.method.clone().unwrap_or_else(|| {
+            let waveform = if args.sine { "sine" } else { "square" };
+            let carrier = format!("a {waveform} carrier of {} Hz", args.carrier_hz);
+            format!("{simulated}{} under {carrier}", method_of(fit.data().division))
+        });
         let date = Utc::now().date_naive().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
         let mut written = vec![self.profile.filled(fit.profile(experiment).to_toml().as_bytes())?];

@@ -4,7 +4,7 @@ use frixel_lab::simulate::{check_duration, screen_m, ticks_per_row};
 use std::time::Duration;
 
 use crate::commands::error::of_finger;
-use crate::output::{Effects, WorldReport};
+use crate::output::WorldReport;
 use anyhow::{Result, bail};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::RigConfig;
@@ -68,8 +68,8 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
             "a stroke moves the finger of --port sim, --port qemu and --port pico only; a board at {port} has its own: \
              leave out --stroke and --from"
         ),
-        Target::Port if args.effects() != Effects::All || args.finger_seed.is_some() || args.touch.is_given() => bail!(
-            "--ideal, --no-leakage, --finger-seed and --touch change the world of --port sim, --port qemu and --port \
+        Target::Port if args.changes_world() => bail!(
+            "--ideal, --skin, --finger-seed and --touch change the world of --port sim, --port qemu and --port \
              pico only; a board at {port} has its own: leave them out"
         ),
         Target::Port if csv_hz > TELEMETRY_MAX_HZ => bail!(

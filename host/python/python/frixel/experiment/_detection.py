@@ -27,7 +27,8 @@ STIMULUS_HZ = 160.0
 FADE_S = 0.2
 """Fade of the stimulus at either end of a stroke, s, so that no click gives it away."""
 SAMPLE_HZ = 4000
-GAP_UM = 10.0
+GAP_UM = 100.0
+"""So large that electric friction is a square of the voltage, whose mean is the same under every carrier."""
 EXAMPLE = _frixel.EXAMPLE_FINGER
 """The parameters of the bundled finger `example`, which a perceptual profile keeps."""
 NORMAL_LOAD_N = EXAMPLE["normal_load_n"]

@@ -17,11 +17,11 @@ use frixel_driver::{Device, PollingLink, ignore_progress};
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{
     Board, BoardMemory, BoardView, FingertipConfig, OwnFinger, Person, Point, Rig, RigConfig, RigTick, Stroke,
-    TouchConfig, WorldOptions, example_finger,
+    TouchConfig, WorldOptions,
 };
 use frixel_lab::calibration::{align, write_csv};
 use frixel_lab::fit::{self, Estimate, Fit, FitError, Settings};
-use frixel_model::{Contact, Finger};
+use frixel_model::{Contact, Finger, Waveform};
 use frixel_play::{Player, RigStream};
 use frixel_scene::{Scene, Screen, compile};
 
@@ -63,6 +63,7 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
         voltage_v_rms: 150.0,
         normal_load_n: None,
         coating_gap_m: Screen::example().coating_gap_m(),
+        ripple: fit::measured_ripple(Waveform::Square, 1e3),
         without: Vec::new(),
         seed: 1,
     };
@@ -71,13 +72,10 @@ fn fitted(csv: &[u8]) -> Result<Fit, FitError> {
 
 /// Electric friction of a person at a steady drive of 150 V rms, in steady sliding under a load, in newtons.
 fn steady_electric_friction_n(person: &Person, load_n: f64) -> f64 {
-    // The friction of the scene's finger at 150 V, reduced so that rounding stays within reach.
-    let target_n = 0.9999 * example_finger().unwrap().electric_friction_n(150.0);
-    let scene = format!(
-        "version = 1\ndrive = {{ voltage_max_v_rms = 150 }}\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
-         above = \"natural\"\nfriction_n = {target_n}\n"
-    );
-    let scene = Scene::parse(&scene, "steady", &BTreeMap::new()).unwrap();
+    // Almost the whole reach, so that rounding stays within it.
+    let scene = "version = 1\ndrive = { voltage_max_v_rms = 150 }\n[[layer]]\nname = \"steady\"\nkind = \"constant\"\n\
+                 friction_fraction = 0.9999\n";
+    let scene = Scene::parse(scene, "steady", &BTreeMap::new()).unwrap();
     let program = compile(&scene, &Board::SIMULATOR.limits, Board::SIMULATOR.tick_hz).unwrap();
     // The person's friction coefficient under this load, since the contact below has this load as its own.
     let gain = (load_n / person.normal_load_n).powf(person.fingertip.load_exponent);
