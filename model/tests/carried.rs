@@ -1,4 +1,5 @@
 //! Mean friction under a carrier, against the mean over every tick of a wave followed step by step.
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, Waveform};
 
