@@ -7,7 +7,7 @@
 //! ```
 //! use frixel_model::{Finger, InverseTable, Ripple};
 //! // 10 um of coating, 0.5 N of load, an ideal square carrier, at most 150 V, no limit on the friction.
-//! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, Ripple::NONE, 150.0, f32::INFINITY)?;
+//! let table = InverseTable::of_finger(&Finger::<f32>::EXAMPLE, 10e-6, 0.5, &Ripple::NONE, 150.0, f32::INFINITY)?;
 //! let voltage_v_rms = table.voltage_v_rms(0.02);
 //! assert!((voltage_v_rms - 128.0).abs() < 0.5);
 //! # Ok::<(), frixel_model::TableError>(())

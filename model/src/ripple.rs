@@ -3,6 +3,7 @@
 use core::f32::consts::FRAC_PI_2;
 
 use crate::carrier::tangent_deficit;
+use crate::double_single::DoubleSingle;
 use crate::{Carrier, Real, Waveform};
 
 /// Number of levels of a ripple.
@@ -26,6 +27,40 @@ const PHASES: [f32; LEVELS / 2] = [0.980_785_3, 0.831_469_6, 0.555_570_2, 0.195_
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ripple {
     levels: [Level; LEVELS],
+}
+
+/// Number, sum and sum of squares of the excesses of some ticks.
+#[derive(Default)]
+struct Moments {
+    count: f32,
+    sum: f32,
+    squares: f32,
+}
+
+impl Moments {
+    fn add(&mut self, excess: f32) {
+        self.count += 1.0;
+        self.sum += excess;
+        self.squares += excess * excess;
+    }
+
+    /// Mean and standard deviation; zero without ticks.
+    fn mean_and_deviation(&self) -> (f32, f32) {
+        let count = self.count.max(1.0);
+        let mean = self.sum / count;
+        (mean, root((self.squares / count - mean * mean).max(0.0)))
+    }
+}
+
+/// `1 - tanh(r)/r`.
+fn deficit(r: f32) -> f32 {
+    let r = DoubleSingle::from(r);
+    tangent_deficit(r, r * r).to_f32()
+}
+
+/// Square root.
+fn root(square: f32) -> f32 {
+    DoubleSingle::from(square).sqrt().to_f32()
 }
 
 /// Mean square in some ticks of a period.
@@ -52,57 +87,36 @@ impl Ripple {
         &self.levels
     }
 
-    /// Shifts the mean excess to 0, which it misses by the rounding.
-    fn centred(mut self) -> Self {
-        let (sum, weights) = self
-            .levels
-            .iter()
-            .fold((0.0, 0.0), |(sum, weights), level| (sum + level.weight * level.excess, weights + level.weight));
-        for level in &mut self.levels {
-            level.excess -= sum / weights;
-        }
-        self
-    }
-
     /// The ripple of a square wave, whose half period is `half_period_ticks` long, or `2 lags` time constants.
     ///
     /// After an edge, the voltage follows `1 - s exp(-t/tau)` with `s = 1 + tanh(lags)`. With `r` half the time
     /// constants in a tick, `rho = tanh(r)/r` and `e = 1 + tanh(r)`, a tick decays by `d = exp(-2 r) = (2 - e)/e`, and
     /// tick `k` has the mean square `1 - 2 s (rho/e) d^k + s^2 (rho/e^2) d^2k`.
+    #[inline(never)]
     fn square(half_period_ticks: u32, lags: f32) -> Self {
         let r = lags / half_period_ticks as f32;
-        let rho = 1.0 - tangent_deficit(r, r * r);
+        let rho = 1.0 - deficit(r);
         let e = 1.0 + r * rho;
         let decay = (2.0 - e) / e;
-        let mean_square = tangent_deficit(lags, lags * lags);
+        let mean_square = deficit(lags);
         let loss = 1.0 - mean_square;
-        let s = 1.0 + lags * loss;
-        let mut remaining = s;
-        let mut excess = || {
+        let mut remaining = 1.0 + lags * loss;
+        let mut levels = [Level { excess: 0.0, weight: 0.0 }; LEVELS];
+        let mut rest = Moments::default();
+        for tick in 0..half_period_ticks {
             let excess = (loss - rho / e * remaining * (2.0 - remaining / e)) / mean_square;
             remaining *= decay;
-            excess
-        };
-        let mut levels = [Level { excess: 0.0, weight: 0.0 }; LEVELS];
-        let own_ticks = if half_period_ticks as usize <= LEVELS { half_period_ticks as usize } else { EDGE_TICKS };
-        for level in levels.iter_mut().take(own_ticks) {
-            *level = Level { excess: excess(), weight: 1.0 };
+            match levels.get_mut(tick as usize) {
+                Some(level) if (tick as usize) < EDGE_TICKS => *level = Level { excess, weight: 1.0 },
+                _ => rest.add(excess),
+            }
         }
-        if let [_, _, _, _, _, _, low, high] = &mut levels
-            && own_ticks == EDGE_TICKS
-        {
-            // Two levels have the mean and the variance of all further ticks.
-            let count = half_period_ticks.saturating_sub(EDGE_TICKS as u32);
-            let (sum, sum_of_squares) = (0..count)
-                .map(|_| excess())
-                .fold((0.0, 0.0), |(sum, squares), excess| (sum + excess, squares + excess * excess));
-            let ticks = count as f32;
-            let mean = sum / ticks;
-            let deviation = Real::sqrt((sum_of_squares / ticks - mean * mean).max(0.0));
-            *low = Level { excess: mean - deviation, weight: 0.5 * ticks };
-            *high = Level { excess: mean + deviation, weight: 0.5 * ticks };
+        // Two levels have the mean and the variance of all further ticks.
+        let (mean, deviation) = rest.mean_and_deviation();
+        for (level, excess) in levels.iter_mut().skip(EDGE_TICKS).zip([mean - deviation, mean + deviation]) {
+            *level = Level { excess, weight: 0.5 * rest.count };
         }
-        Self { levels }.centred()
+        Self { levels }
     }
 
     /// A ripple `depth cos(phase)` at twice the frequency of a sine.
@@ -152,7 +166,7 @@ fn held_sine_depth(lags: f32, half_period_ticks: f32) -> f32 {
     let half_angle = FRAC_PI_2 / half_period_ticks;
     let t = half_angle * (1.0 - tangent_deficit(half_angle, -(half_angle * half_angle)));
     let r = lags / half_period_ticks;
-    let kept = tangent_deficit(r, r * r);
+    let kept = deficit(r);
     let rho = 1.0 - kept;
     let h = r * rho;
     let (h_squared, t_squared) = (h * h, t * t);
@@ -160,5 +174,5 @@ fn held_sine_depth(lags: f32, half_period_ticks: f32) -> f32 {
     let mean_square = (h_squared + t_squared * kept) / sum;
     let swing = rho * h_squared / (sum * sum);
     let (real, imaginary) = (kept + swing * (h_squared - t_squared), swing * 2.0 * t * h);
-    (Real::sqrt(real * real + imaginary * imaginary) / mean_square).min(1.0)
+    (root(real * real + imaginary * imaginary) / mean_square).min(1.0)
 }

@@ -110,7 +110,7 @@ fn tables_stay_within_their_bound_of_the_mean() {
             };
             for load_n in [0.0_f32, 1e-3, 0.5, 2.0] {
                 let carried = contact(&exact, 5e-6_f32.into(), load_n.into()).under_carrier(carrier.ripple());
-                let table = InverseTable::of_finger(&finger, 5e-6, load_n, carrier.ripple(), 200.0, f32::INFINITY);
+                let table = InverseTable::of_finger(&finger, 5e-6, load_n, &carrier.ripple(), 200.0, f32::INFINITY);
                 let table = table.unwrap();
                 let knee_n = carried.electric_friction_n(1.0).next_up() as f32;
                 let most_n = table.electric_friction_max_n();

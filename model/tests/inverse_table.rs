@@ -68,13 +68,13 @@ fn a_table_filled_over_another_is_a_fresh_one_and_a_refusal_changes_nothing() {
     let points = [(50.0, 0.01), (150.0, 0.09)]
         .map(|(voltage_v_rms, electric_friction_n)| LawPoint { voltage_v_rms, electric_friction_n });
     for up_to_n in [f32::INFINITY, 0.02] {
-        let of_finger = InverseTable::of_finger(&finger, 1e-5, 0.5, Ripple::NONE, 150.0, up_to_n).unwrap();
+        let of_finger = InverseTable::of_finger(&finger, 1e-5, 0.5, &Ripple::NONE, 150.0, up_to_n).unwrap();
         let of_law = InverseTable::of_law(2.0, &points, 150.0, up_to_n).unwrap();
         let mut table = of_law.clone();
-        let mut filling = table.begin(&finger, 1e-5, 0.5, Ripple::NONE, 150.0, up_to_n).unwrap();
+        let mut filling = table.begin(&finger, 1e-5, 0.5, &Ripple::NONE, 150.0, up_to_n).unwrap();
         while !filling.fill(&mut table, 3).unwrap() {}
         assert_eq!(table, of_finger);
-        assert!(table.begin(&finger, 0.0, 0.5, Ripple::NONE, 150.0, up_to_n).is_err());
+        assert!(table.begin(&finger, 0.0, 0.5, &Ripple::NONE, 150.0, up_to_n).is_err());
         assert!(table.begin_law(2.0, &[], 150.0, up_to_n).is_err());
         assert_eq!(table, of_finger);
         let mut filling = table.begin_law(2.0, &points, 150.0, up_to_n).unwrap();

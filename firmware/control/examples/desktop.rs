@@ -29,7 +29,7 @@ fn coefficients(board: &Board, scene: &Header, records: &[Record]) -> Result<Act
     active.slew_step_v = scene.slew_v_per_s * board.tick_period_s();
     active.host_timeout_ticks = board.ticks(scene.host_timeout_s);
     let max_v_rms = active.voltage_max_v_rms;
-    active.table = InverseTable::of_finger(&FINGER, GAP_M, LOAD_N, carrier.ripple(), max_v_rms, f32::INFINITY)?;
+    active.table = InverseTable::of_finger(&FINGER, GAP_M, LOAD_N, &carrier.ripple(), max_v_rms, f32::INFINITY)?;
     active.layers.begin(scene, std::iter::empty());
     for record in records {
         active.layers.push(record, board.tick_hz, &|_| None)?;

@@ -75,7 +75,7 @@ fn check_table(header: &Header, ripple: Ripple) -> Result<(), ReachError> {
         friction_coefficient: header.friction_coefficient,
     };
     let (gap_m, normal_load_n) = (header.effective_gap_m, header.normal_load_n);
-    InverseTable::of_finger(&finger, gap_m, normal_load_n, ripple, voltage_max_v_rms, f32::INFINITY)
+    InverseTable::of_finger(&finger, gap_m, normal_load_n, &ripple, voltage_max_v_rms, f32::INFINITY)
         .map(|_| ())
         .map_err(|_: TableError| ReachError::Table)
 }

@@ -1,11 +1,10 @@
 //! The contact under a carrier: friction averaged over a carrier period.
 
 use super::LoadedContact;
-use super::curve::Point;
 use crate::double_single::DoubleSingle;
 use crate::{ParameterError, Real, Ripple};
 
-/// Most steps of Newton's method in the inverse. Each squares the error; `f32` needs three, and `f64` four.
+/// Most steps of Newton's method in the inverse. Each squares the error; `f32` needs at most three, and `f64` four.
 const STEPS_MAX: usize = 6;
 
 /// A contact under a carrier: its electric friction is the mean over a carrier period, since the skin feels the mean.
@@ -13,7 +12,7 @@ const STEPS_MAX: usize = 6;
 /// The friction of every tick is that of the [`LoadedContact`] at the mean squared voltage of the tick. Created by
 /// [`LoadedContact::under_carrier`]. With [`Ripple::NONE`] it has the friction of the contact.
 ///
-/// In f64, forward and inverse agree within 1e-13 of the friction.
+/// In f64, forward and inverse agree within 1e-13 of the friction, while `(V/V*)^4` is representable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarriedContact<T> {
     contact: LoadedContact<T>,
@@ -64,14 +63,33 @@ impl<T: Correctable> CarriedContact<T> {
             return None;
         }
         let (v, n) = self.contact.scaled(voltage_v_rms);
-        Surroundings::of(v.to_correction(), n.to_correction())
+        Some(Surroundings::of(v.to_correction(), n.to_correction()))
+    }
+}
+
+/// A precision of corrections.
+pub trait Correction: Real {
+    /// Square root.
+    fn root(self) -> Self;
+}
+
+impl Correction for f64 {
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+}
+
+impl Correction for f32 {
+    /// By the root of [`DoubleSingle`], which a board needs anyway; that of `libm` takes 500 bytes more.
+    fn root(self) -> Self {
+        DoubleSingle::from(self).sqrt().to_f32()
     }
 }
 
 /// A precision whose corrections for ripple, at most a fifth of the friction, are computed in another one.
 pub trait Correctable: Real {
     /// Precision of the correction.
-    type Correction: Real;
+    type Correction: Correction;
     /// The nearest number of that precision.
     fn to_correction(self) -> Self::Correction;
     /// The same number.
@@ -101,47 +119,50 @@ impl Correctable for DoubleSingle {
 
 /// A point of the curve and its load, from which relative changes of friction are computed without cancellation.
 struct Surroundings<T> {
-    point: Point<T>,
+    q: T,
     n: T,
+    /// The attraction around the contact, `w`.
+    around: T,
+    /// `y - q`.
+    margin: T,
+    y: T,
 }
 
-impl<T: Real> Surroundings<T> {
-    /// Beyond these limits of `V/V*`, friction is a pure power of the voltage within `f32`; `q^2` stays in its range.
-    const LIMITS: [f32; 2] = [1e-9, 1e7];
+impl<T: Correction> Surroundings<T> {
+    #[inline(never)]
+    fn of(v: T, n: T) -> Self {
+        let q = v * v;
+        let around = T::ONE / (T::ONE + q);
+        let margin = Self::margin_at(q, around, n);
+        Self { q, n, around, margin, y: q + margin }
+    }
 
-    fn of(v: T, n: T) -> Option<Self> {
-        let [least, most] = Self::LIMITS.map(T::from);
-        let (v, n) = if v > most {
-            // Only the ratio of `n` to `q^2` matters here.
-            let scale = most / v;
-            (most, n * scale * scale * scale * scale)
-        } else {
-            (v.max(least), n)
-        };
-        Some(Self { point: Point::upper(v, n)?, n })
+    fn margin_at(q: T, around: T, n: T) -> T {
+        (q * q + T::TWO * q * around + n).root()
     }
 
     /// Relative change of friction, and its derivative, for a relative change of the squared voltage by `change`, of at
     /// least -1.
     fn friction_change(&self, change: T) -> (T, T) {
-        let Self { point: Point { v, around, margin, y }, n } = *self;
-        let q = v * v;
+        let Self { q, n, around, margin, y } = *self;
         let q_change = q * change;
         let new_q = q + q_change;
         let new_around = T::ONE / (T::ONE + new_q);
-        let new_margin = (new_q * new_q + T::TWO * new_q * new_around + n).sqrt();
+        let new_margin = Self::margin_at(new_q, new_around, n);
         let around_change = -(q_change * around * new_around);
         let square_change = q_change * (T::TWO * q + q_change) - T::TWO * around_change;
         let y_change = q_change + square_change / (new_margin + margin);
         let sum = y + around;
         let friction_change = change + (T::ONE + change) * ((y_change + around_change) / sum);
         let new_y = y + y_change;
+        // Without voltage and load, `y` and the margin vanish together.
         let steepness = if new_margin > T::ZERO { new_y / new_margin } else { T::ONE };
         (friction_change, (new_y + new_around * new_around) * steepness / sum)
     }
 
     /// Relative change of the mean friction from that at a constant voltage, for a relative change of the mean square
     /// by `change`, and its derivative.
+    #[inline(never)]
     fn mean(&self, ripple: &Ripple, change: T) -> (T, T) {
         let (mut values, mut slopes, mut weights) = (T::ZERO, T::ZERO, T::ZERO);
         for level in ripple.levels() {
@@ -155,17 +176,19 @@ impl<T: Real> Surroundings<T> {
     }
 
     /// Relative change of the voltage that gives the mean friction the value of the friction at a constant voltage.
+    #[inline(never)]
     fn voltage_change(&self, ripple: &Ripple) -> T {
         let mut change = T::ZERO;
         for _ in 0..STEPS_MAX {
             let (value, slope) = self.mean(ripple, change);
             let step = value / slope;
             change = change - step;
-            if step.abs() <= T::EPSILON {
+            // The next step would be about the square of this one.
+            if step * step <= T::EPSILON {
                 break;
             }
         }
         // The root of `1 + change`, less 1.
-        change / (T::ONE + (T::ONE + change).sqrt())
+        change / (T::ONE + (T::ONE + change).root())
     }
 }

@@ -91,7 +91,7 @@ impl InverseTable {
         finger: &Finger<f32>,
         gap_m: f32,
         normal_load_n: f32,
-        ripple: Ripple,
+        ripple: &Ripple,
         voltage_max_v_rms: f32,
         up_to_n: f32,
     ) -> Result<Self, TableError> {
@@ -108,7 +108,7 @@ impl InverseTable {
         finger: &Finger<f32>,
         gap_m: f32,
         normal_load_n: f32,
-        ripple: Ripple,
+        ripple: &Ripple,
         voltage_max_v_rms: f32,
         up_to_n: f32,
     ) -> Result<InverseTableFilling, TableError> {
@@ -116,7 +116,7 @@ impl InverseTable {
             return Err(TableError::Voltage);
         }
         let contact = LoadedContact::of_finger(finger, gap_m, normal_load_n).ok_or(TableError::Contact)?;
-        self.begin_in_double_single(contact.under_carrier(ripple), DoubleSingle::from(voltage_max_v_rms), up_to_n)
+        self.begin_in_double_single(contact.under_carrier(*ripple), DoubleSingle::from(voltage_max_v_rms), up_to_n)
     }
 
     /// Builds the table of an empirical law, from the numbers sent to a board; see [`EmpiricalLaw::new`]. The

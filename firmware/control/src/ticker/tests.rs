@@ -30,7 +30,7 @@ fn active(carrier: CarrierTiming, slew_step_v: f32, voltage_max_v_rms: f32, host
     let mut active = Active::new();
     let Header { effective_gap_m, normal_load_n, .. } = HEADER;
     active.table =
-        InverseTable::of_finger(&finger, effective_gap_m, normal_load_n, Ripple::NONE, 150.0, f32::INFINITY).unwrap();
+        InverseTable::of_finger(&finger, effective_gap_m, normal_load_n, &Ripple::NONE, 150.0, f32::INFINITY).unwrap();
     let layer = Layer::Constant(Constant { electric_friction_n: 1.0 });
     let record = Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer };
     active.layers.begin(&HEADER, core::iter::empty());

@@ -136,20 +136,19 @@ fn load_drive(active: &mut Active, scene: &Scene, board: &Board) -> Result<(), R
     Ok(())
 }
 
-/// The carrier of a scene.
-fn carrier(header: &Header, board: &Board) -> Carrier {
-    // Without the feature, this lets the compiler omit the sine. `load_drive` has refused such a scene.
-    let waveform = match header.waveform {
+/// The waveform of a scene. Without the feature, this lets the compiler omit the sine; `load_drive` has refused such a
+/// scene.
+fn waveform(header: &Header) -> Waveform {
+    match header.waveform {
         Waveform::Sine if cfg!(feature = "sine-carrier") => Waveform::Sine,
         _ => Waveform::Square,
-    };
-    Carrier { waveform, ..header.carrier(&board.limits, board.tick_hz) }
+    }
 }
 
 /// The timing of a scene's carrier, and its largest rms voltage within all limits.
 fn timing(header: &Header, board: &Board) -> Result<(CarrierTiming, f32), ConfigRefusal> {
     let limits = &board.limits;
-    let carrier = carrier(header, board);
+    let carrier = Carrier { waveform: waveform(header), ..header.carrier(limits, board.tick_hz) };
     let half_period_ticks = carrier.half_period_ticks;
     let peak_per_rms = carrier.peak_per_rms();
     let voltage_max_v_rms = header.voltage_max_v_rms.min(header.voltage_max_v_peak / peak_per_rms);
@@ -201,15 +200,9 @@ fn begin_table(
 ) -> Result<InverseTableFilling, ConfigRefusal> {
     let Header { effective_gap_m, normal_load_n, .. } = *header;
     let max_n = header.electric_friction_max_n.unwrap_or(f32::INFINITY);
+    let carrier = Carrier { waveform: waveform(header), ..header.carrier(&board.limits, board.tick_hz) };
     table
-        .begin(
-            &finger(header),
-            effective_gap_m,
-            normal_load_n,
-            carrier(header, board).ripple(),
-            voltage_max_v_rms,
-            max_n,
-        )
+        .begin(&finger(header), effective_gap_m, normal_load_n, &carrier.ripple(), voltage_max_v_rms, max_n)
         .map_err(|error| no_table(&error, header, voltage_max_v_rms))
 }
 
