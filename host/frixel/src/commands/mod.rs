@@ -25,6 +25,7 @@ mod sim;
 mod stroke;
 mod studio;
 mod sweep;
+mod target;
 mod terminal;
 mod waiting;
 
@@ -128,7 +129,7 @@ struct SimArgs {
     expect: bool,
     /// Rig of the scenario: `sim` in this process, or an emulated `qemu` or `pico`.
     #[arg(long, value_enum, default_value_t, hide_possible_values = true, requires = "scenario")]
-    rig: scenario::RigKind,
+    rig: target::Target,
 }
 
 impl Cli {

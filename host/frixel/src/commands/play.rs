@@ -16,7 +16,6 @@ mod recorded;
 pub(super) mod replay;
 mod rigs;
 mod stream_args;
-mod target;
 mod watch;
 mod with_log;
 
@@ -34,12 +33,12 @@ use super::argument::RARE;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::{StrokeArgs, of_stroke_options};
+use super::target::{self, Target};
 use super::terminal::{self, note, note_refusals, print_line};
 use super::{argument, waiting};
 use live_scene::LiveScene;
 use outputs::PlayFiles;
 use stream_args::StreamArgs;
-use target::Target;
 
 #[derive(Debug, Args)]
 #[allow(clippy::struct_excessive_bools, reason = "each is an option of its own")]
@@ -195,7 +194,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<()> {
     let target = Target::of(&args.port);
     plan::check_options(args, target)?;
     let interrupt = Interrupt::watch()?;
-    if args.watch && target == Target::Simulator {
+    if args.watch && target == Target::Sim {
         return watch::play_on_simulator(args, &interrupt);
     }
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
@@ -203,9 +202,8 @@ pub(super) fn run(args: &PlayArgs) -> Result<()> {
     let scene = scene?;
     let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files, outputs.clone()));
     let played = match target {
-        Target::Simulator => rigs::play_on_simulator(args, &scene, (outputs, live_scene), &interrupt),
-        Target::Emulator => rigs::play_on_emulator(args, &scene, (outputs, live_scene), &interrupt),
-        Target::Pico => rigs::play_on_pico(args, &scene, (outputs, live_scene), &interrupt),
+        Target::Sim => rigs::play_on_simulator(args, &scene, (outputs, live_scene), &interrupt),
+        Target::Qemu | Target::Pico => rigs::play_on_emulator(args, &scene, target, (outputs, live_scene), &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, (outputs, live_scene), &interrupt),
     }?;
     finish(args, played)

@@ -4,11 +4,9 @@ use anyhow::{Result, anyhow, bail};
 use frixel_driver::{DEFAULT_BAUD, Device, PortError, SerialLink};
 use frixel_scene::Nearest;
 
+use super::target::Target;
 use super::terminal::note;
 use crate::rigs::PortLink;
-
-/// The boards that `--port` of `frixel play` names in place of a path.
-pub(super) const BOARDS: [&str; 3] = ["sim", "qemu", "pico"];
 
 /// Opens the serial port that `--port` names. `boards` are the names that the command also accepts.
 pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
@@ -40,7 +38,7 @@ pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<
 fn advice(port: &str, boards: &[&str]) -> String {
     let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
     let takes = format!("--port takes {words}the path of a board's serial port");
-    match Nearest::new(port, BOARDS).suggestion {
+    match Nearest::new(port, Target::names()).suggestion {
         Some(board) if boards.contains(&board.as_str()) => format!("{takes}; did you mean `{board}`?"),
         Some(board) if board == "sim" => format!("{takes} here: start `frixel sim`, and give the port that it prints"),
         Some(board) => format!("{takes} here, and `{board}` is a board of `frixel play`"),

@@ -4,9 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
-use clap::ValueEnum;
-#[cfg(unix)]
-use frixel_hil_sim::World;
 #[cfg(unix)]
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
 use frixel_hil_sim::{Board, RigConfig};
@@ -22,22 +19,11 @@ use crate::scene_file::load;
 use frixel_lab::input::check_path;
 
 use super::stroke::note_off_screen;
+use super::target::Target;
 use super::terminal::{note, print_line};
 
-/// The rig that a scenario runs on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum RigKind {
-    /// The simulator in this process.
-    #[default]
-    Sim,
-    /// The firmware on an emulated board.
-    Qemu,
-    /// The image of the Pico on an emulator.
-    Pico,
-}
-
 /// Runs a scenario, prints what happened, and fails if something was not as expected and `expect` is set.
-pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
+pub(super) fn run(file: &Path, expect: bool, rig: Target) -> Result<()> {
     let scenario = read(file)?;
     if expect && scenario.expectations.is_empty() {
         bail!(
@@ -48,18 +34,14 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
     }
     let scenes = scenes(&scenario, file)?;
     let outcome = match rig {
-        RigKind::Sim => {
+        Target::Sim => {
             let config = RigConfig::default();
             run_in_process(&scenario, &programs(&scenario, &scenes, &config.board)?, &config)?
         }
         #[cfg(unix)]
-        RigKind::Qemu => run_emulated(&scenario, &scenes)?,
-        #[cfg(unix)]
-        RigKind::Pico => run_on_pico(&scenario, &scenes)?,
+        rig => run_emulated(&scenario, &scenes, rig)?,
         #[cfg(not(unix))]
-        RigKind::Qemu => return Err(super::error::no_pseudo_terminal("--rig qemu")),
-        #[cfg(not(unix))]
-        RigKind::Pico => return Err(super::error::no_pseudo_terminal("--rig pico")),
+        rig => return Err(super::error::no_pseudo_terminal(&format!("--rig {}", rig.name()))),
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);
@@ -73,22 +55,20 @@ pub(super) fn run(file: &Path, expect: bool, rig: RigKind) -> Result<()> {
     Ok(())
 }
 
-/// Runs a scenario on the firmware in an emulator.
+/// Runs a scenario on the board of `rig` in an emulator.
 #[cfg(unix)]
-fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome> {
-    let (programs, world) = prepare(scenario, scenes, &BOARD)?;
+fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, rig: Target) -> Result<ScenarioOutcome> {
+    let board = if rig == Target::Pico { Board::PICO } else { BOARD };
+    let programs = programs(scenario, scenes, &board)?;
+    let world = scenario::world(scenario, &programs, &board)?;
+    if rig == Target::Pico {
+        let mut rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
+        return Ok(scenario::run(scenario, &programs, &mut rig)?);
+    }
     let mut board = LinkBoard::start(&Image::find(EmulatedBoard::Mps2An386)?, world)?;
     let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board)?)?;
     board.check()?;
     Ok(outcome)
-}
-
-/// Runs a scenario on the image of the Pico in an emulator.
-#[cfg(unix)]
-fn run_on_pico(scenario: &Scenario, scenes: &BTreeMap<String, Scene>) -> Result<ScenarioOutcome> {
-    let (programs, world) = prepare(scenario, scenes, &Board::PICO)?;
-    let mut rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
-    Ok(scenario::run(scenario, &programs, &mut rig)?)
 }
 
 /// The programs of a scenario for a board. Prints a note if the stroke leaves the screen.
@@ -100,14 +80,6 @@ fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board
         note_off_screen(&name, &stroke, screen_m(program), scenario.seconds).map_err(at(&scenario.file))?;
     }
     Ok(programs)
-}
-
-/// The programs of a scenario for a board, and the world around it.
-#[cfg(unix)]
-fn prepare(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<(Programs, World)> {
-    let programs = programs(scenario, scenes, board)?;
-    let world = scenario::world(scenario, &programs, board)?;
-    Ok((programs, world))
 }
 
 fn print(outcome: &ScenarioOutcome) -> Result<()> {

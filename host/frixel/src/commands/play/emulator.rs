@@ -5,7 +5,7 @@ use crate::rigs::EmulatedRig;
 use anyhow::Result;
 use frixel_driver::{Device, PollingLink};
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
-use frixel_hil_sim::{Board, RigConfig, World};
+use frixel_hil_sim::{Board, RigConfig};
 use frixel_play::RigStream;
 use frixel_scene::Scene;
 
@@ -16,14 +16,23 @@ use super::plan::Plan;
 use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
-/// Plays on the firmware in an emulator, under a simulated finger.
+/// Plays on the board of `target` in an emulator, under a simulated finger.
 pub(super) fn play_on_emulator(
     args: &PlayArgs,
     scene: &Scene,
+    target: Target,
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played> {
-    let (plan, world) = prepare(args, scene, Target::Emulator, &BOARD)?;
+    let board = if target == Target::Pico { Board::PICO } else { BOARD };
+    let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
+    let simulation = plan.simulation(args, scene, &RigConfig::of(board))?.clone();
+    let world = simulation.world(&plan.program).map_err(of_simulation)?;
+    if target == Target::Pico {
+        let rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
+        let device = Device::connect(PollingLink::new(RigStream::new(rig)))?;
+        return follow(args, plan, device, outputs, interrupt);
+    }
     let mut board = LinkBoard::start(&Image::find(EmulatedBoard::Mps2An386)?, world)?;
     let device = Device::connect(PollingLink::new(RigStream::new(EmulatedRig::open(&board)?)))?;
     let mut played = follow(args, plan, device, outputs, interrupt)?;
@@ -31,25 +40,4 @@ pub(super) fn play_on_emulator(
         played.failure = played.failure.or(board.check().err().map(anyhow::Error::from));
     }
     Ok(played)
-}
-
-/// Plays on the image of the Pico in an emulator, under a simulated finger.
-pub(super) fn play_on_pico(
-    args: &PlayArgs,
-    scene: &Scene,
-    outputs: (PlayFiles, Option<LiveScene>),
-    interrupt: &Interrupt,
-) -> Result<Played> {
-    let (plan, world) = prepare(args, scene, Target::Pico, &Board::PICO)?;
-    let rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
-    let device = Device::connect(PollingLink::new(RigStream::new(rig)))?;
-    follow(args, plan, device, outputs, interrupt)
-}
-
-/// The plan of a play on an emulated board, and the world around the board.
-fn prepare(args: &PlayArgs, scene: &Scene, target: Target, board: &Board) -> Result<(Plan, World)> {
-    let mut plan = Plan::new(args, scene, target, (&board.limits, board.tick_hz))?;
-    let simulation = plan.simulation(args, scene, &RigConfig::of(*board))?.clone();
-    let world = simulation.world(&plan.program).map_err(of_simulation)?;
-    Ok((plan, world))
 }

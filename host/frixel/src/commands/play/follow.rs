@@ -40,7 +40,7 @@ pub(super) fn follow<L: RecordedLink>(
     let recorder = plan.recorder()?;
     let recorder = if args.record.is_some() { recorder.keeping_samples() } else { recorder };
     let player = Player::recording(waiting::watch(device, interrupt), recorder);
-    let waits = plan.target == Target::Simulator;
+    let waits = plan.target == Target::Sim;
     let control = args.control.then(|| Control::start(waits, interrupt)).transpose()?;
     let (bars, writing, refusals) = (Bars::default(), Duration::ZERO, sentences(&plan.program));
     let mut play =

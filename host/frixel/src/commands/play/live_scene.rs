@@ -98,7 +98,7 @@ impl LiveScene {
         player: &mut Player<L>,
     ) -> Result<Option<(SceneFiles, ReplaceOutcome)>, PlayError> {
         // In virtual time, the play waits for the compiler.
-        let waits = self.loader.target == Target::Simulator;
+        let waits = self.loader.target == Target::Sim;
         if let Some(next) = self.next.take_if(|next| waits || next.compiling.is_finished()) {
             let compiled = next.compiling.join().unwrap_or_else(|panic| resume_unwind(panic));
             return self.play(next.origin, compiled, player);

@@ -47,19 +47,19 @@ pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
         bail!("standard input has either the lines of --control or the samples of --stream -: give --stream a file");
     }
     match target {
-        Target::Emulator | Target::Pico if args.watch => bail!(
+        Target::Qemu | Target::Pico if args.watch => bail!(
             "--watch follows the file while a board plays in real time, which --port {port} does not: start `frixel \
              sim` and give its port"
         ),
-        Target::Simulator if args.watch && (args.control || args.stream.is_standard_input()) => bail!(
+        Target::Sim if args.watch && (args.control || args.stream.is_standard_input()) => bail!(
             "--watch on the simulator plays again after each change, and standard input can be read only once: leave \
              out --control or --stream -, or start `frixel sim` and give its port"
         ),
-        Target::Simulator | Target::Emulator | Target::Pico if args.with_log.is_some() => bail!(
+        Target::Sim | Target::Qemu | Target::Pico if args.with_log.is_some() => bail!(
             "--with-log joins the log of a virtual board at a port, and --port {port} records what is felt itself: \
              leave --with-log out"
         ),
-        Target::Emulator | Target::Pico if args.stream.is_given() => {
+        Target::Qemu | Target::Pico if args.stream.is_given() => {
             bail!(
                 "the emulated board's serial port is too slow for a stream: leave --stream out, or play on --port sim"
             )
@@ -97,8 +97,8 @@ impl Plan {
         note_refusals(&args.scene, &program);
         print_notes(&program);
         let telemetry_period_ticks = match target {
-            Target::Simulator => 0,
-            Target::Emulator | Target::Pico => tick_hz / EMULATED_TELEMETRY_HZ,
+            Target::Sim => 0,
+            Target::Qemu | Target::Pico => tick_hz / EMULATED_TELEMETRY_HZ,
             Target::Port => telemetry_period_ticks(&program, ticks_per_row, tick_hz),
         };
         let feed = args.stream.open(tick_hz, target)?;

@@ -6,9 +6,9 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig};
 use frixel_play::{RigStream, check_measured};
 use frixel_scene::Scene;
 
-use super::super::port::{self, BOARDS};
+use super::super::port;
 #[cfg(unix)]
-pub(super) use super::emulator::{play_on_emulator, play_on_pico};
+pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
@@ -39,32 +39,22 @@ pub(super) fn simulator<'a>(
 ) -> Result<(Plan, Simulator<'a>)> {
     let config = RigConfig::default();
     let board = (&config.board.limits, config.board.tick_hz);
-    let mut plan = Plan::new(args, scene, Target::Simulator, board)?;
+    let mut plan = Plan::new(args, scene, Target::Sim, board)?;
     let rig = plan.simulation(args, scene, &config)?.rig(memory)?;
     let device = Device::connect(PollingLink::new(RigStream::new(rig)))?;
     Ok((plan, device))
 }
 
-/// Rejects the emulator, because its serial port is a pseudo-terminal.
+/// Rejects the emulators, which are built for Unix only.
 #[cfg(not(unix))]
 pub(super) fn play_on_emulator(
     _: &PlayArgs,
     _: &Scene,
+    target: Target,
     _: (PlayFiles, Option<LiveScene>),
     _: &Interrupt,
 ) -> Result<Played> {
-    Err(crate::commands::error::no_pseudo_terminal("--port qemu"))
-}
-
-/// Rejects the emulator, which is built for Unix only.
-#[cfg(not(unix))]
-pub(super) fn play_on_pico(
-    _: &PlayArgs,
-    _: &Scene,
-    _: (PlayFiles, Option<LiveScene>),
-    _: &Interrupt,
-) -> Result<Played> {
-    Err(crate::commands::error::no_pseudo_terminal("--port pico"))
+    Err(crate::commands::error::no_pseudo_terminal(&format!("--port {}", target.name())))
 }
 
 /// Plays on the board on a serial port. The scene is compiled for the limits that this board reports.
@@ -74,7 +64,7 @@ pub(super) fn play_on_port(
     outputs: (PlayFiles, Option<LiveScene>),
     interrupt: &Interrupt,
 ) -> Result<Played> {
-    let device = port::connect_to_play(&args.port, &BOARDS, args.arm)?;
+    let device = port::connect_to_play(&args.port, &Target::names().collect::<Vec<_>>(), args.arm)?;
     let hello = *device.hello();
     let plan = Plan::new(args, scene, Target::Port, (&hello.limits, hello.tick_hz))?;
     check_measured(&plan.program, hello.board)?;

@@ -42,7 +42,7 @@ impl StreamArgs {
 
     /// Opens the source of the samples. The simulator waits when a pipe is empty; other boards run out of samples.
     pub(super) fn open(&self, tick_hz: u32, target: Target) -> Result<Option<Feed>> {
-        let waits = target == Target::Simulator;
+        let waits = target == Target::Sim;
         match (&self.stream, self.stream_hz) {
             (None, None) => Ok(None),
             (None, Some(_)) => {

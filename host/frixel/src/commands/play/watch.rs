@@ -40,7 +40,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
 /// Loads the scene and plays it. Also returns the files that it was read from.
 fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<()>, SceneFiles) {
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
-    let played = PlayFiles::new(args, Target::Simulator, &files).and_then(|outputs| {
+    let played = PlayFiles::new(args, Target::Sim, &files).and_then(|outputs| {
         let played = rigs::play_on_simulator(args, &scene?, (outputs, None), interrupt)?;
         finish(args, played)
     });

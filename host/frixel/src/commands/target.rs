@@ -1,31 +1,34 @@
-//! The kinds of board that `--port` can name.
+//! The kinds of board that `--port` and `--rig` name.
 
+use clap::ValueEnum;
 use frixel_hil_sim::RigConfig;
 use frixel_scene::{CompileError, Program, Scene, compile, compile_draft};
 use frixel_wire::hello::{BoardLimits, Hello};
 
 /// Kind of the board that plays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Target {
     /// The simulated board in this process.
-    Simulator,
+    #[default]
+    Sim,
     /// The firmware in an emulator.
-    Emulator,
+    Qemu,
     /// The image of the Pico in an emulator.
     Pico,
-    /// A board on a serial port, real or virtual.
+    /// A board on a serial port, real or virtual, which `--rig` does not accept.
+    #[value(skip)]
     Port,
 }
 
 impl Target {
     /// The kind of board that `--port` names.
     pub(super) fn of(port: &str) -> Self {
-        match port {
-            "sim" => Self::Simulator,
-            "qemu" => Self::Emulator,
-            "pico" => Self::Pico,
-            _ => Self::Port,
-        }
+        Self::from_str(port, false).unwrap_or(Self::Port)
+    }
+
+    /// The names of every kind but a board on a serial port.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        Self::value_variants().iter().map(|target| target.name())
     }
 
     /// Whether the play runs in the board's own time, with a finger that is simulated beside it.
@@ -36,8 +39,8 @@ impl Target {
     /// Compiles a scene for this kind of board. Only the simulator in this process plays drafts.
     pub(super) fn compile(self, scene: &Scene, limits: &BoardLimits, tick_hz: u32) -> Result<Program, CompileError> {
         match self {
-            Self::Simulator => compile_draft(scene, limits, tick_hz),
-            Self::Emulator | Self::Pico | Self::Port => compile(scene, limits, tick_hz),
+            Self::Sim => compile_draft(scene, limits, tick_hz),
+            Self::Qemu | Self::Pico | Self::Port => compile(scene, limits, tick_hz),
         }
     }
 
@@ -45,14 +48,14 @@ impl Target {
     /// tick time, for drafts; scenes are compiled for its usual limits.
     pub(super) fn limits(self, hello: &Hello) -> (BoardLimits, u32) {
         let board = RigConfig::default().board;
-        if self == Self::Simulator { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }
+        if self == Self::Sim { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }
     }
 
-    /// The name of this kind in the report.
+    /// The name of this kind on the command line and in the report.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Simulator => "sim",
-            Self::Emulator => "qemu",
+            Self::Sim => "sim",
+            Self::Qemu => "qemu",
             Self::Pico => "pico",
             Self::Port => "board",
         }
