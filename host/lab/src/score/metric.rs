@@ -156,9 +156,7 @@ pub(super) const METRICS: [Metric; 14] = [
     },
     Metric {
         unit: "Weber steps",
-        human: || {
-            Some(Human { value: weber_steps_safe(), meaning: "felt by everyone in the studies (ln 1.27 / ln 1.11)" })
-        },
+        human: || Some(Human { value: weber_steps_safe(), meaning: "felt by everyone in the studies" }),
         ..Metric::new("contrast_weber_steps", "contrast felt", |fidelity| Some(fidelity.contrast_weber_steps))
     },
     Metric::new("contrast_kept", "contrast kept", |fidelity| fidelity.contrast_kept),
