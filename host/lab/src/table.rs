@@ -46,8 +46,8 @@ use utf16::Utf8;
 /// Spellings of an unknown value.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
-/// Number of bytes from which the format is detected. They contain the header.
-const HEAD_BYTES: u64 = 64 << 10;
+/// Number of bytes at the beginning of a file from which its format is detected. They contain a table's header.
+pub(crate) const HEAD_BYTES: u64 = 64 << 10;
 
 /// A column that a caller reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,9 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use super::claims::FOOTER_MAX_BYTES;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
-use crate::table::{Column, Table, TableError};
+use crate::table::{Column, HEAD_BYTES, Table, TableError};
 use crate::{fit, stroke_file};
 
-/// Number of bytes at the beginning of a file that identify it.
-const HEAD: u64 = 64 << 10;
 /// The column that a person's play adds to those of a stroke.
 const PARTICIPANT: &str = "participant";
 /// A line, without blanks, of a profile based on a person's perception.
@@ -24,7 +22,7 @@ const OF_A_PERSON: &str = "\"simulated\":false";
 /// - `felt.csv`, `summary.json` or the Parquet file of a person's play.
 pub fn is_of_person(mut file: impl Read + Seek) -> io::Result<bool> {
     let mut head = Vec::new();
-    file.by_ref().take(HEAD).read_to_end(&mut head)?;
+    file.by_ref().take(HEAD_BYTES).read_to_end(&mut head)?;
     if head.starts_with(MAGIC) {
         return Ok(is_footer_of_person(&footer(&mut file)?));
     }
