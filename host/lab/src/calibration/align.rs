@@ -1,8 +1,8 @@
 //! Aligns the clock of the force sensor with the board's, and joins their data.
 
 use super::{CalibrationError, ForceRow};
-use crate::fit::Row;
 use crate::fit::turns::STILL_MM_S;
+use crate::fit::{ROWS_HZ_MIN, Row, STROKE_MIN_S};
 
 /// Rate at which both signals are compared, in Hz.
 const GRID_HZ: f64 = 1000.0;
@@ -16,10 +16,6 @@ const FINE: i64 = 12;
 const CORRELATION_MIN: f64 = 0.1;
 /// Largest drift of the clocks during the recording, in seconds.
 const DRIFT_MAX_S: f64 = 1e-3;
-/// Slowest sensor, in Hz.
-const SENSOR_MIN_HZ: f64 = 200.0;
-/// Shortest stroke that is used, in seconds.
-const STROKE_MIN_S: f64 = 0.4;
 
 /// A report of the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,9 +43,9 @@ pub fn align(board: &[BoardRow], forces: &[ForceRow], is_simulated: bool) -> Res
         )));
     }
     let sensor_hz = (forces.len() - 1) as f64 / found;
-    if sensor_hz < SENSOR_MIN_HZ {
+    if sensor_hz.round() < ROWS_HZ_MIN {
         return Err(CalibrationError::Refused(format!(
-            "the forces have {sensor_hz:.0} rows a second, fewer than 200: half-periods of 20 ms need at least 200"
+            "the forces have {sensor_hz:.0} rows a second, fewer than {ROWS_HZ_MIN}: half-periods of 20 ms need more"
         )));
     }
     let drive = detrended(&grid(board, |row| row.time_s, |row| row.voltage_v_rms * row.voltage_v_rms));
@@ -255,7 +251,7 @@ mod tests {
         }
         assert!(refused(&board, &forces).starts_with("friction does not follow the drive"));
         let few: Vec<ForceRow> = forces.iter().step_by(10).copied().collect();
-        assert!(refused(&board, &few).contains("fewer than 200"));
+        assert!(refused(&board, &few).contains("fewer than 250"));
         assert!(refused(&board, &forces[..2000]).starts_with("the forces last 2.0 s"));
     }
 }

@@ -15,7 +15,7 @@ const START_S: f64 = 0.15;
 /// Time dropped at the end of a stroke, in seconds: the finger turns.
 const END_S: f64 = 0.05;
 /// Shortest stroke, in seconds: 0.2 s remain after both ends are dropped.
-const SHORTEST_S: f64 = START_S + 0.2 + END_S;
+pub(crate) const STROKE_MIN_S: f64 = START_S + 0.2 + END_S;
 /// Least number of rows that are left of a stroke.
 const KEPT_ROWS: usize = 5;
 /// Speeds at which the lag of friction was measured, in mm/s (arXiv 2505.11162).
@@ -60,7 +60,7 @@ impl Stroke {
 
     /// Whether too little is left of it without start and end.
     fn is_short(&self) -> bool {
-        self.rows.len() < KEPT_ROWS || self.duration_s().is_some_and(|duration_s| duration_s < SHORTEST_S)
+        self.rows.len() < KEPT_ROWS || self.duration_s().is_some_and(|duration_s| duration_s < STROKE_MIN_S)
     }
 
     /// Time from the first to the last row; `None` without times.
@@ -233,7 +233,7 @@ fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, Fault> {
     if division != Division::Blocks
         && let (Some(first_s), Some(duration_s)) = (stroke.rows.first().and_then(|row| row.time_s), stroke.duration_s())
     {
-        if duration_s < SHORTEST_S {
+        if duration_s < STROKE_MIN_S {
             return Err(Fault::Short { found: format!("{duration_s:.3} s") });
         }
         let kept_s = first_s + START_S..=first_s + duration_s - END_S;

@@ -6,6 +6,7 @@ use super::error::{FitError, plain};
 use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
 use super::recording::{Recording, Stroke};
+use super::sensor::ROWS_HZ_MIN;
 use super::table::Row;
 use crate::bootstrap::GROUP_MIN;
 use crate::statistics::{mean, median};
@@ -147,7 +148,7 @@ pub(super) fn check_phases(phases: &Phases) -> Result<(), FitError> {
     let Some(rows) = phases.unresolved_rows() else { return Ok(()) };
     Err(FitError::Refused(format!(
         "the drive is switched every {rows:.0} rows, too few to leave out the rows beside a switch, where friction is on \
-         its way: record at least 250 rows a second and switch every 20 ms or later"
+         its way: record at least {ROWS_HZ_MIN} rows a second and switch every 20 ms or later"
     )))
 }
 

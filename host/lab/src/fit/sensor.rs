@@ -53,6 +53,9 @@ const RISE_OF_MEAN: f64 = 0.8;
 /// as 171 Hz or more, and a Savitzky-Golay filter over 11 ms, which biases a fit by 1.4 %, as 131 Hz.
 const BANDWIDTH_MIN_HZ: f64 = 135.0;
 
+/// Smallest row rate, in Hz. Below it, the bandwidth of the sensor remains unknown.
+pub(crate) const ROWS_HZ_MIN: f64 = 250.0;
+
 /// Bandwidth of the response to a switch of the drive, in Hz, including the finger's friction. `None` if the data are
 /// inconclusive: without times, with few switches, or too noisy. Fails if it is too slow.
 pub(super) fn check_bandwidth(phases: &Phases) -> Result<Option<f64>, FitError> {
@@ -63,7 +66,7 @@ pub(super) fn check_bandwidth(phases: &Phases) -> Result<Option<f64>, FitError> 
         return Err(FitError::NotSettled(format!(
             "the force sensor is too slow: friction takes {rise_ms:.1} ms from 10 to 90 % of its way after a switch of \
              the drive, as with a bandwidth of {bandwidth_hz:.0} Hz, so that electric friction would come out too \
-             small; use a sensor, and a filter behind it, of at least 200 Hz, with at least 250 rows a second"
+             small; use a sensor, and a filter behind it, of at least 200 Hz, with at least {ROWS_HZ_MIN} rows a second"
         )));
     }
     Ok(Some(bandwidth_hz))
