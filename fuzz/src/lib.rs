@@ -16,12 +16,13 @@ use std::time::Duration;
 use frixel_driver::{Device, DeviceError, PollingLink, Upload, ignore_progress};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
+use frixel_lab::input::SceneFolder;
 use frixel_lab::recording::{Metadata, Recording};
 use frixel_lab::sweep::{Plan, Source, Sweep};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
 use frixel_play::{RigStream, board_costs};
-use frixel_scene::{FileUnavailable, Files, Scenario, Scene, compile};
+use frixel_scene::{Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
 
@@ -98,22 +99,12 @@ fn stem(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The files that a scene of the gallery names.
-struct GalleryFiles;
-
-impl Files for GalleryFiles {
-    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-        fs::read(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() })
-    }
-}
-
 /// The scenes of the repository without pictures, compiled, each with the name of its file.
 pub fn compiled_scenes() -> Vec<(String, Vec<u8>)> {
     let board = RigConfig::default().board;
     let programs = scene_files().into_iter().map(|file| {
         let text = fs::read_to_string(&file).expect("a scene file");
-        let scene = Scene::parse(&text, "fuzz.toml", &GalleryFiles).expect("a scene");
+        let scene = Scene::parse(&text, "fuzz.toml", &SceneFolder::of(&file)).expect("a scene");
         (file, compile(&scene, &board.limits, board.tick_hz).expect("a valid scene"))
     });
     let programs = programs.filter(|(_, program)| program.bitmaps.is_empty());

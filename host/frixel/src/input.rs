@@ -4,7 +4,7 @@ use std::io::{self, BufRead, Read};
 use std::path::Path;
 
 pub(crate) use frixel_lab::input::{
-    Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, read_named, whole_lines,
+    Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, whole_lines,
 };
 
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 
-use frixel::scene_file::SceneFolder;
 use frixel_hil_sim::Board;
+use frixel_lab::input::SceneFolder;
 use frixel_scene::{Scene, compile, compile_draft};
 use frixel_testkit::golden;
 use serde_json::Value;

@@ -7,10 +7,10 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use frixel::output::draw_preview_png;
-use frixel::scene_file::SceneFolder;
 use frixel_felt::Preview;
 use frixel_felt::judge::{Advice, LayerVerdict, Verdict};
 use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_lab::input::SceneFolder;
 use frixel_play::{TO_THE_END, judge};
 use frixel_scene::{FingerProfile, Profile, Program, Scene, compile};
 use frixel_testkit::golden;

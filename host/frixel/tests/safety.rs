@@ -5,9 +5,9 @@ use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
 
-use frixel::scene_file::SceneFolder;
 use frixel_felt::judge::{Advice, weber_steps};
 use frixel_hil_sim::{Board, RigConfig, WorldOptions};
+use frixel_lab::input::SceneFolder;
 use frixel_model::TouchBound;
 use frixel_play::{TO_THE_END, judge};
 use frixel_scene::{FingerProfile, Profile, Program, Scene, compile_draft};

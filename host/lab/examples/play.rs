@@ -6,23 +6,15 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::{env, fs};
 
 use frixel_hil_sim::{RigConfig, WorldOptions};
+use frixel_lab::input::SceneFolder;
 use frixel_lab::simulate::default_stroke;
 use frixel_play::{Simulation, TO_THE_END, simulate};
-use frixel_scene::{FileUnavailable, Files, Scene, compile};
-
-/// The pictures and profiles that a scene names, in its folder.
-struct Folder(PathBuf);
-
-impl Files for Folder {
-    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        fs::read(self.0.join(name)).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() })
-    }
-}
+use frixel_scene::{Scene, compile};
 
 fn main() -> ExitCode {
     match play() {
@@ -36,9 +28,8 @@ fn main() -> ExitCode {
 
 fn play() -> Result<(), Box<dyn Error>> {
     let path = PathBuf::from(env::args().nth(1).ok_or("give the path of a scene, for example scenes/brick.toml")?);
-    let files = Folder(path.parent().unwrap_or(Path::new(".")).to_owned());
     let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let scene = Scene::parse_bytes(&bytes, &path.display().to_string(), &files)?;
+    let scene = Scene::parse_bytes(&bytes, &path.display().to_string(), &SceneFolder::of(&path))?;
 
     // A program is compiled for the limits of one board: here the simulated one, in a world with noise and losses.
     let rig = RigConfig::default().with(&WorldOptions::default());

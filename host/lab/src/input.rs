@@ -2,6 +2,8 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod file;
+#[cfg(not(target_arch = "wasm32"))]
+mod scene_files;
 
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -13,6 +15,8 @@ use unicode_normalization::UnicodeNormalization;
 pub use file::{open, read, read_named};
 pub use frixel_scene::TEXT_MAX_BYTES as TOML_MAX_BYTES;
 use frixel_scene::TILDE_ADVICE;
+#[cfg(not(target_arch = "wasm32"))]
+pub use scene_files::{KeptFiles, SceneFolder};
 
 /// Largest picture: a PNG of noise of 4,000 by 4,000 pixels.
 pub const PICTURE_MAX_BYTES: u64 = 64 << 20;

@@ -1,21 +1,15 @@
 //! Scenes: read, compiled, checked and drawn.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use frixel_felt::check::SceneCheck;
 use frixel_felt::judge::Advice;
 use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, WorldOptions};
-use frixel_lab::input::{is_same_name, read_named};
+use frixel_lab::input::{KeptFiles, SceneFolder};
 use frixel_play::{board_costs, judge};
-use frixel_scene::{
-    CompileError, FileUnavailable, Files, Program, Scene as ParsedScene, compile, compile_draft, is_picture,
-    picture_sentence,
-};
+use frixel_scene::{CompileError, Program, Scene as ParsedScene, compile, compile_draft, is_picture, picture_sentence};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -79,7 +73,7 @@ impl Scene {
             return Err(raised(py, "SceneError", (picture_sentence(&name),)));
         }
         let read = py.detach(|| {
-            let files = ReadFiles::new(folder, files);
+            let files = KeptFiles::new(folder.map(SceneFolder), files);
             let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
             let (mut own_finger, mut own_screen) = (None, None);
             if let Some((screen, text)) = screen {
@@ -92,7 +86,7 @@ impl Scene {
             }
             let board = RigConfig::default().board;
             let program = compile_draft(&parsed, &board.limits, board.tick_hz)?;
-            let files = files.into_read();
+            let files = files.into_kept();
             Ok::<_, CompileError>(Self { parsed, program, files, finger: own_finger, screen: own_screen })
         });
         read.map_err(|error| scene_error(py, &error))
@@ -167,52 +161,4 @@ impl Scene {
         let map = PyArray1::from_vec(py, parts_of_reach).reshape([grid.height, grid.width])?;
         Ok((map, caption))
     }
-}
-
-/// Files of a scene. Keeps the bytes that it reads from a folder, so that the scene can be sent elsewhere.
-pub(crate) struct ReadFiles {
-    folder: Option<PathBuf>,
-    read: RefCell<NamedFiles>,
-}
-
-impl ReadFiles {
-    /// Starts from the files in `read`; others are read from `folder`.
-    pub(crate) fn new(folder: Option<PathBuf>, read: NamedFiles) -> Self {
-        Self { folder, read: RefCell::new(read) }
-    }
-
-    /// All files that were read.
-    pub(crate) fn into_read(self) -> NamedFiles {
-        self.read.into_inner()
-    }
-}
-
-impl Files for ReadFiles {
-    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let mut read = self.read.borrow_mut();
-        if !read.contains_key(name) {
-            let same = read.iter().find(|(other, _)| is_same_name(other, name)).map(|(_, bytes)| bytes.clone());
-            let found = match (same, &self.folder) {
-                (None, Some(folder)) => Some(read_in(folder, name)?),
-                (same, _) => same,
-            };
-            read.extend(found.map(|bytes| (name.to_owned(), bytes)));
-        }
-        read.bytes(name)
-    }
-}
-
-fn read_in(folder: &Path, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-    let path = folder.join(name);
-    let searched = path.parent().unwrap_or(folder);
-    let entries = fs::read_dir(searched).into_iter().flatten();
-    let mut files: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
-    let own = path.file_name().and_then(OsStr::to_str).unwrap_or_default();
-    let same = files.iter().find(|other| is_same_name(other, own)).map(|same| searched.join(same));
-    let there = if path.exists() { Some(&path) } else { same.as_ref() };
-    if let Some(path) = there {
-        return read_named(path).map_err(|error| FileUnavailable::Unreadable { reason: error.to_string() });
-    }
-    files.sort();
-    Err(FileUnavailable::Missing { place: searched.display().to_string(), files })
 }

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_lab::input::{TOML_MAX_BYTES, read};
+use frixel_lab::input::{KeptFiles, SceneFolder, TOML_MAX_BYTES, read};
 use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, Sweep, json};
 use frixel_scene::Scene as ParsedScene;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
 
 use super::error::{parameter_error, raised, scene_error};
-use super::scene::{NamedFiles, ReadFiles};
+use super::scene::NamedFiles;
 use super::signals::interruptible;
 
 /// Files by their names.
@@ -61,11 +61,11 @@ fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let bytes = read(&path, TOML_MAX_BYTES).map_err(|error| {
         unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
     })?;
-    let files = ReadFiles::new(path.parent().map(Path::to_owned), NamedFiles::new());
+    let files = KeptFiles::new(Some(SceneFolder::of(&path)), NamedFiles::new());
     let mistakes = |error| Raised(Python::attach(|py| scene_error(py, &error)));
     ParsedScene::parse_bytes(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source::new(name, text, files.into_read()))
+    Ok(Source::new(name, text, files.into_kept()))
 }
 
 /// The text of the file of a screen or a touch source.

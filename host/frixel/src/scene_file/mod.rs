@@ -5,12 +5,10 @@ mod saved_file;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
-use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use frixel_lab::input::{check_path, is_same_name};
+use frixel_lab::input::{KeptFiles, SceneFolder, check_path};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
     CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE,
@@ -109,7 +107,7 @@ pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Sc
     match read(path) {
         Ok(bytes) => {
             files.keep_scene(&bytes);
-            let named = NamedFiles { folder: folder_of(path), files: RefCell::new(files) };
+            let named = NamedFiles { folder: SceneFolder::of(path), files: RefCell::new(files) };
             let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
             (scene, named.files.into_inner())
         }
@@ -132,24 +130,10 @@ fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
 pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
     let file = path.display().to_string();
     let bytes = read(path)?;
-    let kept = KeptFiles { folder: folder_of(path), kept: RefCell::default() };
+    let kept = KeptFiles::new(Some(SceneFolder::of(path)), BTreeMap::new());
     Scene::parse_bytes(&bytes, &file, &kept)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source::new(name, text, kept.kept.into_inner()))
-}
-
-/// Keeps the bytes of each file that a scene names.
-struct KeptFiles {
-    folder: SceneFolder,
-    kept: RefCell<BTreeMap<String, Vec<u8>>>,
-}
-
-impl Files for KeptFiles {
-    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let bytes = self.folder.bytes(name)?;
-        self.kept.borrow_mut().insert(name.to_owned(), bytes.clone());
-        Ok(bytes)
-    }
+    Ok(Source::new(name, text, kept.into_kept()))
 }
 
 /// Notes each file that a scene names before it is read.
@@ -165,11 +149,6 @@ impl Files for NamedFiles {
         self.files.borrow_mut().keep_named(name, &bytes);
         Ok(bytes)
     }
-}
-
-/// The folder that the names in a scene file are relative to.
-fn folder_of(scene: &Path) -> SceneFolder {
-    SceneFolder(scene.parent().unwrap_or(Path::new("")).to_owned())
 }
 
 /// A finger and a screen in place of a scene's own, each by the name of a file or of a bundled profile.
@@ -240,50 +219,10 @@ pub(crate) fn profile<P: Profile>(name: &str) -> Result<P, SceneFileError> {
     Ok(P::parse(&text, name)?)
 }
 
-/// The folder that the names of pictures and profiles in a scene are relative to.
-#[derive(Clone, Debug)]
-pub struct SceneFolder(pub PathBuf);
-
-impl Files for SceneFolder {
-    fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-        let path = existing(self.0.join(name));
-        if path.is_dir() {
-            return Err(FileUnavailable::Unreadable { reason: "it is a folder".to_owned() });
-        }
-        if path.exists() {
-            let unreadable = |error: io::Error| FileUnavailable::Unreadable { reason: error.to_string() };
-            return input::read_named(&path).map_err(unreadable);
-        }
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let place = if folder == Path::new(".") { "this folder".to_owned() } else { folder.display().to_string() };
-        Err(FileUnavailable::Missing { place, files: files_in(folder) })
-    }
-}
-
-/// The path of an existing file or folder: itself, or a path whose names differ only in the Unicode normal form.
-fn existing(path: PathBuf) -> PathBuf {
-    let (Some(name), Some(folder), false) = (path.file_name().and_then(OsStr::to_str), path.parent(), path.exists())
-    else {
-        return path;
-    };
-    let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { existing(folder.to_owned()) };
-    let same = files_in(&folder).into_iter().find(|other| is_same_name(other, name));
-    same.map_or(path.clone(), |same| folder.join(same))
-}
-
-/// The sorted names of the entries of a folder; empty when the folder cannot be read.
-fn files_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten();
-    let mut names: Vec<String> = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
-    names.sort();
-    names
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use frixel_model::{Contact, Finger};
     use frixel_scene::Elasticity;
 
@@ -313,7 +252,7 @@ mod tests {
         }
         for saved in ["scene.toml", "one.png", "other.png"] {
             let files = RefCell::new(SceneFiles::new(&path("scene.toml")));
-            let named = NamedFiles { folder: folder_of(&path("scene.toml")), files };
+            let named = NamedFiles { folder: SceneFolder::of(&path("scene.toml")), files };
             named.bytes("one.png").unwrap();
             named.bytes("other.png").unwrap();
             // As while the rest of the scene is read, or compiled.
@@ -323,32 +262,5 @@ mod tests {
         }
         let mut files = load_with_files(&path("scene.toml")).1;
         assert!(!files.is_saved() && !files.is_saved());
-    }
-
-    #[test]
-    fn a_picture_is_found_by_its_name_in_other_characters() {
-        let folder = tempfile::tempdir().unwrap();
-        // One character each in the scene, and two in the names of the files.
-        let textures = folder.path().join("gru\u{308}n");
-        fs::create_dir(&textures).unwrap();
-        fs::write(textures.join("cafe\u{301}.png"), b"bytes").unwrap();
-        let files = SceneFolder(folder.path().to_owned());
-        assert_eq!(files.bytes("gr\u{fc}n/caf\u{e9}.png"), Ok(b"bytes".to_vec()));
-        assert!(matches!(files.bytes("gr\u{fc}n/cafe.png"), Err(FileUnavailable::Missing { .. })));
-    }
-
-    #[test]
-    fn a_missing_picture_is_looked_for_in_its_own_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let textures = folder.path().join("textures");
-        fs::create_dir(&textures).unwrap();
-        fs::write(textures.join("brick.png"), b"bytes").unwrap();
-        let files = SceneFolder(folder.path().to_owned());
-        assert_eq!(files.bytes("textures/brick.png"), Ok(b"bytes".to_vec()));
-        let missing =
-            FileUnavailable::Missing { place: textures.display().to_string(), files: vec!["brick.png".to_owned()] };
-        assert_eq!(files.bytes("textures/brik.png"), Err(missing.clone()));
-        let FileUnavailable::Unreadable { reason } = files.bytes("textures").unwrap_err() else { panic!() };
-        assert_eq!(reason, "it is a folder");
     }
 }

@@ -14,9 +14,9 @@ use std::path::Path;
 
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
-use frixel::scene_file::SceneFolder;
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_lab::input::SceneFolder;
 use frixel_play::{Simulation, TO_THE_END, simulate};
 use frixel_scene::{Program, Scene, compile};
 

@@ -194,28 +194,19 @@ impl Middles {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
-    use std::path::{Path, PathBuf};
-    use std::{fs, io};
+    use std::fs;
+    use std::path::Path;
 
     use frixel_hil_sim::{FingerState, RigConfig};
     use frixel_scene::reference::{Context, Reference, direction_of};
-    use frixel_scene::{FileUnavailable, Files, Scene, compile};
+    use frixel_scene::{Scene, compile};
 
     use super::*;
-
-    /// The folder of the bundled scenes.
-    struct Scenes(PathBuf);
-
-    impl Files for Scenes {
-        fn bytes(&self, name: &str) -> Result<Vec<u8>, FileUnavailable> {
-            let reason = |error: io::Error| FileUnavailable::Unreadable { reason: error.to_string() };
-            fs::read(self.0.join(name)).map_err(reason)
-        }
-    }
+    use crate::input::SceneFolder;
 
     #[test]
     fn the_default_stroke_crosses_the_middle_of_every_layer_of_every_bundled_scene() {
-        let scenes = Scenes(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
+        let scenes = SceneFolder(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
         for file in fs::read_dir(&scenes.0).unwrap() {
             let path = file.unwrap().path();
             if path.extension().is_none_or(|extension| extension != "toml") {
