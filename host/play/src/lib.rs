@@ -12,7 +12,7 @@
 //! - [`simulate`]: plays a program on the simulated board of this process under a simulated finger, in virtual time.
 //! - [`judge`]: judges a program by simulated strokes.
 //! - [`board_costs`]: memory, table and line bytes that a board needs for a program.
-//! - [`Recorded`]: a link with a record of what the board plays.
+//! - [`Recorded`]: a link with a record of what the board plays, and [`Observed`], of its telemetry only.
 //!
 //! The crate opens no file, reads no clock and starts no thread: time is the link's clock. It compiles for
 //! `wasm32-unknown-unknown`.
@@ -23,6 +23,7 @@ mod error;
 mod feed;
 mod judged;
 mod live_layers;
+mod observed;
 mod player;
 mod recorded;
 mod rig_stream;
@@ -36,6 +37,7 @@ pub use feed::{Feed, FeedError};
 pub use frixel_felt::{GoesOn, TO_THE_END, break_if};
 pub use judged::{board_costs, judge};
 pub use live_layers::{LayerChange, LiveError, LiveLayers};
+pub use observed::Observed;
 pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;
 pub use rig_stream::{RigStream, ticks_spanning};

@@ -1,6 +1,5 @@
 //! A board, simulated or at a serial port, that plays while the Python program calls.
 
-mod observed;
 mod worker;
 
 use std::collections::BTreeMap;

@@ -22,7 +22,7 @@ use serde_json::{Value, json};
 use crate::additions;
 use crate::answer;
 use crate::felt::COLUMNS;
-use crate::host::{self, Host, stream_mut};
+use crate::host::{self, Host};
 use crate::host_error::HostError;
 use crate::layer_text;
 use crate::link_stream::LinkStream;
@@ -306,7 +306,7 @@ pub extern "C" fn host_wait(wait_ms: f64) -> i32 {
     with_host(|host| {
         host.wait(Duration::from_secs_f64(1e-3 * wait_ms.max(0.0)))?;
         let natural_n = host.playing().map_or(0.0, |playing| playing.program().reach.natural_friction_n);
-        let messages = stream_mut(host).take_telemetry();
+        let messages = std::mem::take(host.recorder_mut());
         let telemetry = messages.iter().map(|message| answer::telemetry(message, natural_n));
         let telemetry: Vec<Value> = telemetry.collect();
         let (state, fault) = host.state();

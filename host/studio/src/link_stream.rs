@@ -19,17 +19,11 @@ const CLOSED: i32 = -1;
 pub(crate) struct LinkStream {
     buffer: Box<[u8; READ_MAX]>,
     telemetry: Vec<Telemetry>,
-    recorder: (),
 }
 
 impl LinkStream {
     pub(crate) fn new() -> Self {
-        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new(), recorder: () }
-    }
-
-    /// The telemetry since the last call.
-    pub(crate) fn take_telemetry(&mut self) -> Vec<Telemetry> {
-        std::mem::take(&mut self.telemetry)
+        Self { buffer: Box::new([0; READ_MAX]), telemetry: Vec::new() }
     }
 }
 
@@ -62,10 +56,10 @@ impl ByteStream for LinkStream {
 }
 
 impl Recorded for LinkStream {
-    type Recorder = ();
+    type Recorder = Vec<Telemetry>;
 
-    fn recorder_mut(&mut self) -> &mut () {
-        &mut self.recorder
+    fn recorder_mut(&mut self) -> &mut Vec<Telemetry> {
+        &mut self.telemetry
     }
 
     fn record(&mut self, telemetry: &[Telemetry]) {

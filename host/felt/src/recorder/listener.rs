@@ -3,6 +3,7 @@
 use frixel_model::ParameterError;
 use frixel_scene::{LayerSetting, Program};
 use frixel_wire::hello::BoardLimits;
+use frixel_wire::message::Telemetry;
 
 /// Receives the changes of a play, for the reference that felt friction is compared with.
 pub trait PlayListener {
@@ -48,3 +49,6 @@ pub trait PlayListener {
 
 /// Records nothing.
 impl PlayListener for () {}
+
+/// Keeps the board's messages.
+impl PlayListener for Vec<Telemetry> {}

@@ -2,11 +2,15 @@
 
 use anyhow::{Result, anyhow, bail};
 use frixel_driver::{DEFAULT_BAUD, Device, PortError, SerialLink};
+use frixel_felt::recorder::{Observation, Recorder};
+use frixel_play::Observed;
 use frixel_scene::Nearest;
 
 use super::target::Target;
 use super::terminal::note;
-use crate::rigs::PortLink;
+
+/// A board on a serial port, with the record of its telemetry.
+pub(super) type PortLink = Observed<SerialLink, Recorder>;
 
 /// Opens the serial port that `--port` names. `boards` are the names that the command also accepts.
 pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
@@ -21,7 +25,10 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
 /// Connects to the board at a serial port, to play on it. Prints the board's notices, and rejects a board with an
 /// electrode unless `arm` is set. `boards` are the names that the command also accepts.
 pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
-    let device = Device::connect(PortLink::new(open(port, boards)?))?;
+    let link = Observed::new(open(port, boards)?, Recorder::default(), |recorder, message| {
+        recorder.record(&Observation::from_telemetry(message));
+    });
+    let device = Device::connect(link)?;
     for sentence in device.hello().notice_sentences() {
         note(format_args!("note: {sentence}"));
     }

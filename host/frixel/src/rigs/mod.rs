@@ -1,7 +1,6 @@
 //! Boards with a clock of their own on which a scene can play.
 //!
 //! - [`EmulatedRig`]: the firmware in an emulator, on the emulator's clock.
-//! - `PortLink`: a board on a serial port.
 //! - [`Server`]: a virtual board behind a pseudo-terminal, paced by the wall clock, for use by other programs.
 //!
 //! The emulated and the virtual board need pseudo-terminals, which Unix systems provide.
@@ -11,7 +10,6 @@ mod emulated;
 mod event_log;
 #[cfg(unix)]
 mod pace;
-mod port;
 #[cfg(unix)]
 mod server;
 #[cfg(unix)]
@@ -22,7 +20,6 @@ pub use emulated::EmulatedRig;
 pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
-pub(crate) use port::PortLink;
 #[cfg(unix)]
 pub use server::Server;
 

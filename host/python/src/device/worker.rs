@@ -9,7 +9,7 @@ use std::time::Duration;
 use frixel_driver::{DEFAULT_BAUD, Device, Link, PollingLink, SerialLink};
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, WorldOptions};
 use frixel_lab::simulate::{BUNDLED_SCREEN_M, endless_sweep};
-use frixel_play::{Feed, LiveError, PlayError, Player, Replaced, RigStream, break_if};
+use frixel_play::{Feed, LiveError, Observed, PlayError, Player, Replaced, RigStream, break_if};
 use frixel_scene::Program;
 use frixel_wire::fault::State;
 use frixel_wire::hello::Hello;
@@ -17,7 +17,6 @@ use frixel_wire::message::Telemetry;
 use pyo3::PyErr;
 
 use super::SIMULATOR;
-use super::observed::Observed;
 
 /// Seed of the simulated world.
 const SEED: u64 = 1;
@@ -156,9 +155,14 @@ fn simulated(
     let config = RigConfig::default().for_drafts().with(&WorldOptions::default());
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;
-    let link = Observed::new(PollingLink::new(RigStream::new(rig)));
-    serve(Device::connect(link).map_err(failed)?, opened, ends, interrupted);
+    let link = PollingLink::new(RigStream::new(rig));
+    serve(Device::connect(observed(link)).map_err(failed)?, opened, ends, interrupted);
     Ok(())
+}
+
+/// A link that keeps the telemetry until it is taken.
+fn observed<L>(link: L) -> Observed<L, Vec<Telemetry>> {
+    Observed::new(link, Vec::new(), |kept, message| kept.push(*message))
 }
 
 fn real(
@@ -169,7 +173,7 @@ fn real(
     interrupted: &Interrupted,
 ) -> Result<(), Trouble> {
     let serial = SerialLink::open(port, DEFAULT_BAUD).map_err(failed)?;
-    let device = Device::connect(Observed::new(serial)).map_err(failed)?;
+    let device = Device::connect(observed(serial)).map_err(failed)?;
     if !device.may_arm(arm) {
         return Err(Trouble::Play(format!(
             "{port} is a board with an electrode: give arm=True, and press and hold the board's arm switch before \
@@ -182,7 +186,7 @@ fn real(
 
 /// Carries out requests until the program releases the board, then disarms it.
 fn serve<L: Link>(
-    mut device: Device<Observed<L>>,
+    mut device: Device<Observed<L, Vec<Telemetry>>>,
     opened: &Sender<Result<Hello, Trouble>>,
     (requests, replies): Ends<'_>,
     interrupted: &Interrupted,
@@ -201,7 +205,7 @@ fn serve<L: Link>(
 }
 
 fn carry_out<L: Link>(
-    player: &mut Player<Observed<L>>,
+    player: &mut Player<Observed<L, Vec<Telemetry>>>,
     request: Request,
     interrupted: &Interrupted,
 ) -> Result<Vec<String>, PlayError> {
@@ -232,7 +236,7 @@ fn carry_out<L: Link>(
 }
 
 /// Lets `duration` pass on the board.
-fn listen<L: Link>(player: &mut Player<Observed<L>>, duration: Duration) -> Result<(), PlayError> {
+fn listen<L: Link>(player: &mut Player<Observed<L, Vec<Telemetry>>>, duration: Duration) -> Result<(), PlayError> {
     let end = player.device().now() + duration;
     loop {
         let left = end.saturating_sub(player.device().now());
@@ -252,8 +256,8 @@ fn replaced(Replaced { faded_out, dropped_gains }: Replaced) -> Vec<String> {
     faded_out.into_iter().chain(dropped).collect()
 }
 
-fn report<L: Link>(player: &mut Player<Observed<L>>, sentences: Vec<String>) -> Report {
-    let telemetry = player.device_mut().link_mut().take_telemetry();
+fn report<L: Link>(player: &mut Player<Observed<L, Vec<Telemetry>>>, sentences: Vec<String>) -> Report {
+    let telemetry = std::mem::take(player.recorder_mut());
     let (state, _) = player.state();
     let now = player.device().now();
     Report { state, now, is_streaming: player.is_streaming(), sentences, telemetry }

@@ -1,43 +1,42 @@
-//! A link that keeps the telemetry of its board.
+//! A link whose telemetry is kept.
 
 use std::time::Duration;
 
 use frixel_driver::{Link, LinkClosed, Written};
-use frixel_play::Recorded;
+use frixel_felt::recorder::PlayListener;
 use frixel_wire::message::Telemetry;
 
-/// A link to a board, with the telemetry that was received and not yet passed on.
-pub(super) struct Observed<L> {
+use crate::Recorded;
+
+/// A link to a board that is observed through telemetry only.
+pub struct Observed<L, R> {
     link: L,
-    telemetry: Vec<Telemetry>,
-    /// Records nothing.
-    recorder: (),
+    recorder: R,
+    keep: fn(&mut R, &Telemetry),
 }
 
-impl<L> Observed<L> {
-    pub(super) fn new(link: L) -> Self {
-        Self { link, telemetry: Vec::new(), recorder: () }
-    }
-
-    /// The telemetry since the last call.
-    pub(super) fn take_telemetry(&mut self) -> Vec<Telemetry> {
-        std::mem::take(&mut self.telemetry)
+impl<L, R> Observed<L, R> {
+    /// Creates a link that passes each message of the board to `keep`, with `recorder`.
+    pub fn new(link: L, recorder: R, keep: fn(&mut R, &Telemetry)) -> Self {
+        Self { link, recorder, keep }
     }
 }
 
-impl<L> Recorded for Observed<L> {
-    type Recorder = ();
+impl<L, R: PlayListener> Recorded for Observed<L, R> {
+    type Recorder = R;
 
-    fn recorder_mut(&mut self) -> &mut () {
+    fn recorder_mut(&mut self) -> &mut R {
         &mut self.recorder
     }
 
     fn record(&mut self, telemetry: &[Telemetry]) {
-        self.telemetry.extend_from_slice(telemetry);
+        for message in telemetry {
+            (self.keep)(&mut self.recorder, message);
+        }
     }
 }
 
-impl<L: Link> Link for Observed<L> {
+impl<L: Link, R> Link for Observed<L, R> {
     fn write(&mut self, frame: &[u8]) -> Result<u64, LinkClosed> {
         self.link.write(frame)
     }
