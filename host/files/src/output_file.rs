@@ -154,16 +154,11 @@ impl OutputFile {
         self.create()?.live()
     }
 
-    /// Opens a file of lines for appending, and calls `each` with every line in it. Waits while another process appends.
-    /// Removes the partial last line that a killed process left.
-    pub fn append(&self, each: impl FnMut(&[u8])) -> Result<FileWriter, Error> {
-        self.append_waiting(each, pause)
-    }
-
-    /// [`Self::append`], with `wait` between tries.
-    pub(crate) fn append_waiting(&self, each: impl FnMut(&[u8]), wait: impl FnMut()) -> Result<FileWriter, Error> {
+    /// Opens a file of lines for appending, and calls `each` with every line in it. While another process appends, calls
+    /// `waits` once, and waits. Removes the partial last line that a killed process left.
+    pub fn append(&self, each: impl FnMut(&[u8]), waits: impl FnOnce()) -> Result<FileWriter, Error> {
         let Some(file) = &self.file else { return self.create() };
-        let mut lines = when_free(|| NewFile::open(&self.path, file, file), wait)?;
+        let mut lines = when_free(|| NewFile::open(&self.path, file, file), waits)?;
         lines.stay(each).map_err(writing(&self.path))?;
         Ok(FileWriter::new(&self.path, Sink::File(lines)))
     }
@@ -176,7 +171,7 @@ impl OutputFile {
     /// Writes the whole file, which other processes may write at the same moment with the same content.
     pub fn write_shared(&self, bytes: &[u8]) -> Result<(), Error> {
         let is_there = || read(&self.path, bytes.len() as u64).is_ok_and(|there| there == bytes);
-        when_free(|| if is_there() { Ok(()) } else { self.write(bytes) }, pause)
+        when_free(|| if is_there() { Ok(()) } else { self.write(bytes) }, || ())
     }
 
     /// Like [`Self::write`], without the commit.
@@ -195,18 +190,18 @@ impl OutputFile {
     }
 }
 
-/// Tries until no other process has the file, with `wait` between tries.
-fn when_free<T>(open: impl Fn() -> Result<T, Error>, mut wait: impl FnMut()) -> Result<T, Error> {
+/// Tries until no other process has the file. Calls `waits` before the second try.
+fn when_free<T>(open: impl Fn() -> Result<T, Error>, waits: impl FnOnce()) -> Result<T, Error> {
+    let mut waits = Some(waits);
     loop {
         match open() {
-            Err(Error::Busy(_)) => wait(),
+            Err(Error::Busy(_)) => {
+                waits.take().into_iter().for_each(|waits| waits());
+                thread::sleep(BUSY_PERIOD);
+            }
             opened => return opened,
         }
     }
-}
-
-fn pause() {
-    thread::sleep(BUSY_PERIOD);
 }
 
 /// Path of a result that is not complete.

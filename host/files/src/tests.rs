@@ -48,10 +48,10 @@ fn recording(path: &Path, overwrites: bool) -> OutputFile {
 fn lines_are_appended_behind_the_whole_ones() {
     let folder = Folder::new();
     let output = folder.output("lines", "one\ntwo\nthr");
-    let append = |wait: &mut dyn FnMut()| {
+    let append = |waits: &mut dyn FnMut()| {
         let mut there = Vec::new();
         let each = |line: &[u8]| there.push(String::from_utf8_lossy(line).into_owned());
-        let writer = output.append_waiting(each, wait).unwrap();
+        let writer = output.append(each, waits).unwrap();
         (writer, there)
     };
     let (mut writer, there) = append(&mut || panic!("no other process has it"));
@@ -69,7 +69,7 @@ fn lines_are_appended_behind_the_whole_ones() {
     });
     assert!(holder.is_none());
     assert_eq!((there.len(), folder.count()), (4, 1));
-    assert!(folder.output("new", "").append(|_| panic!("there is no line")).is_ok());
+    assert!(folder.output("new", "").append(|_| panic!("there is no line"), || ()).is_ok());
 }
 
 /// Whatever ends the renaming, every name has a whole file: the last one has not been replaced yet.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::argument::shard;
 use super::error::{at, reading};
 use super::jobs::JobsArgs;
-use super::terminal::print_line;
+use super::terminal::{note, print_line};
 use crate::input;
 use crate::scene_file::gathered;
 use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all, create_folder};
@@ -88,7 +88,9 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
         let _ = read_results(&path, |result| _ = there.insert(result.cell));
     }
     let own = OutputFile::new(&out.join(format!("{CELLS}/{part}-of-{parts}.{LINES}")), "-o", &inputs)?;
-    let writer = own.append(|line| there.extend(result(line).map(|result| result.cell)))?;
+    let path = own.path().display();
+    let waits = || note(format_args!("frixel: another process writes {path}: waiting until it ends"));
+    let writer = own.append(|line| there.extend(result(line).map(|result| result.cell)), waits)?;
     let writer = Mutex::new(writer);
     let play = |number: usize| {
         let cell = sweep.cell(number)?;
