@@ -1,7 +1,7 @@
 //! The parts of this board. [`crate::output`] and [`crate::inputs`] simulate DAC, amplifier and arm switch; this module
 //! has placeholders for the parts that the emulated board lacks.
 
-use frixel_board::hardware::{Dac, Hardware, Watchdog};
+use frixel_board::hardware::{Hardware, Watchdog};
 use frixel_drivers::pin::{DirectPin, SetLevel};
 use frixel_exchange::BOARD;
 
@@ -21,7 +21,8 @@ impl Hardware for Mps2 {
 
     type Period = Period;
     type Frames = Frames;
-    type Dac = NoDac;
+    // The simulator takes codes.
+    type Dac = ();
     type Enable = Enable;
     type Ready = DirectPin<Ready>;
     type Monitor = Monitor;
@@ -29,19 +30,6 @@ impl Hardware for Mps2 {
     type Light = DirectPin<NoLight>;
     type Serial = Uart;
     type Watchdog = NoWatchdog;
-}
-
-/// There is no DAC to configure: the simulator takes codes.
-pub struct NoDac;
-
-impl Dac for NoDac {
-    fn prepare(&mut self) -> Result<(), u32> {
-        Ok(())
-    }
-
-    fn check(&mut self) -> Result<(), u32> {
-        Ok(())
-    }
 }
 
 /// There is no light.

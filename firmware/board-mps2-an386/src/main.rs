@@ -35,7 +35,7 @@ use frixel_drivers::serial::SerialLink;
 use frixel_exchange::{BOARD, layout};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
-use board::{NoDac, NoLight, NoWatchdog};
+use board::{NoLight, NoWatchdog};
 use inputs::{Monitor, Ready, Switch};
 use output::{Enable, Frames};
 use period::Period;
@@ -67,7 +67,7 @@ fn run(made: BoardParts, boot: Boot, mut peripherals: Peripherals) -> ! {
     let parts = Parts {
         period: Period::default(),
         frames: Frames,
-        dac: NoDac,
+        dac: (),
         enable: Enable,
         ready: DirectPin(Ready),
         monitor: Monitor::new(),

@@ -7,7 +7,7 @@ use board_nucleo_g474re::board::{Nucleo, TICK_HZ};
 use board_nucleo_g474re::dac::Frames;
 use board_nucleo_g474re::period::Period;
 use board_nucleo_g474re::watchdog::Watchdog;
-use frixel_board::hardware::{Dac, DacFrames, Hardware, Late};
+use frixel_board::hardware::{DacFrames, Hardware, Late};
 use frixel_drivers::amplifier::KickedEnable;
 use frixel_drivers::pin::{DirectPin, ReadLevel};
 use frixel_wire::dac_code::DacCode;
@@ -23,7 +23,7 @@ impl Hardware for Wired {
 
     type Period = Period;
     type Frames = ZeroFrames;
-    type Dac = NoDac;
+    type Dac = ();
     type Enable = NoEnable;
     type Ready = DirectPin<AlwaysHigh>;
     type Monitor = Adc;
@@ -52,19 +52,6 @@ impl KickedEnable for NoEnable {
 
     #[inline]
     fn disable(&mut self) {}
-}
-
-/// Placeholder for the DAC, which passes every check.
-pub(crate) struct NoDac;
-
-impl Dac for NoDac {
-    fn prepare(&mut self) -> Result<(), u32> {
-        Ok(())
-    }
-
-    fn check(&mut self) -> Result<(), u32> {
-        Ok(())
-    }
 }
 
 /// Ready line without an amplifier, always high.

@@ -10,7 +10,7 @@ use frixel_drivers::pin::DirectPin;
 use stm32_metapac::interrupt;
 
 use crate::captures::Captures;
-use crate::hardware::{AlwaysHigh, NoDac, NoEnable, ScriptedSwitch, Wired, ZeroFrames};
+use crate::hardware::{AlwaysHigh, NoEnable, ScriptedSwitch, Wired, ZeroFrames};
 use crate::looped::Still;
 
 frixel_cortex_m::tick_interrupt!(Wired, TIM3);
@@ -23,7 +23,7 @@ pub(crate) fn tick(board: Board, still: Still) -> (MainLoop<Wired>, Captures) {
     let parts = Parts {
         period,
         frames: ZeroFrames(frames),
-        dac: NoDac,
+        dac: (),
         enable: NoEnable,
         ready: DirectPin(AlwaysHigh),
         monitor: adc,
