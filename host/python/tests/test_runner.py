@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from frixel import Finger, ParameterError, Scene, model
-from frixel.experiment import TWO_ALTERNATIVES, Answers, Observer, perceptual_finger
+from frixel.experiment import TWO_ALTERNATIVES, Answers, Observer, estimate, perceptual_finger
 from frixel.experiment import _detection as detection
 
 ON_BOARD = ["--port", "sim", "--trials", "12"]
@@ -117,7 +117,7 @@ def test_the_board_drives_the_voltage_of_a_level() -> None:
 def test_answers_of_a_guesser_are_no_threshold() -> None:
     guesser = Observer(float("inf"), lapse=0.0, seed=3)
     answers = Answers((level, guesser.answers(level, TWO_ALTERNATIVES)) for level in detection.LEVELS * 2)
-    assert detection.detection(answers).threshold is None
+    assert estimate(answers, TWO_ALTERNATIVES).threshold is None
 
 
 def test_a_profile_needs_an_interval_around_its_threshold() -> None:

@@ -135,7 +135,7 @@ def observer_of(seed: int) -> Observer:
 def method_of(name: str, trials: int) -> Method:
     """The method `quest` or `up-down`, set up for this many trials."""
     if name == "quest":
-        return QuestPlus(detection.LEVELS, TWO_ALTERNATIVES, trials=trials, grid=detection.GRID)
+        return QuestPlus(detection.LEVELS, TWO_ALTERNATIVES, trials=trials)
     return UpDown(0.3, trials=trials, step=1.4, largest=1.0)
 
 
@@ -146,7 +146,7 @@ def ask(
     session.run(method, play, answer)
     for check in range(CHECKS_MAX + 1):
         answers = Answers((row["level"], row["correct"]) for row in session.rows)
-        found = detection.detection(answers)
+        found = session.estimate(answers)
         if found.threshold is not None or found.evidence < GUESSED or check == CHECKS_MAX:
             break
         session.run(ConstantStimuli([1.0], 1), play, answer, block="check")

@@ -18,8 +18,7 @@ from .._arguments import number, refusal
 from .._arguments import text as checked_text
 from ..profiles import Finger
 from ..scene import Scene
-from ._estimate import Answers, Estimate, estimate
-from ._psychometric import TWO_ALTERNATIVES, Array, Grid
+from ._psychometric import Array
 
 STROKE_S = 1.6
 """Duration of each of the two strokes, s."""
@@ -40,8 +39,6 @@ CONTACT = model.Contact(
 )
 """Finger for which the board computes voltages. Any finger will do, because only the voltages count."""
 LEVELS = [float(level) for level in np.geomspace(1e-3, 1.0, 31)]
-GRID = Grid(np.geomspace(2e-4, 2.0, 93), np.geomspace(0.8, 5.0, 7), np.array([0.0, 0.01, 0.03]))
-"""Slopes go up to 5: over the amplitude of friction, a slope is about 3.5 (Watson and Pelli 1983), or less."""
 
 
 def scene(voltage_v_rms: float) -> Scene:
@@ -69,11 +66,6 @@ def voltage_of(level: ArrayLike, voltage_v_rms: float) -> Array:
     largest_n = model.eval(CONTACT, voltage_v_rms, NORMAL_LOAD_N).electric_friction_n
     shares = np.minimum(np.asarray(level, dtype=np.float64), 1.0)
     return model.invert(CONTACT, shares * largest_n, NORMAL_LOAD_N, electric=True)
-
-
-def detection(answers: Answers) -> Estimate:
-    """The threshold of the answers, as a share of the largest amplitude."""
-    return estimate(answers, TWO_ALTERNATIVES, GRID)
 
 
 def perceptual_finger(
