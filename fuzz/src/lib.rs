@@ -21,7 +21,7 @@ use frixel_lab::recording::{Metadata, Recording};
 use frixel_lab::sweep::{Plan, Source, Sweep};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_play::{RigStream, board_costs};
+use frixel_play::{RigStream, TO_THE_END, board_costs};
 use frixel_scene::{Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
@@ -148,10 +148,10 @@ fn recording_file() -> Vec<u8> {
 /// Reads arbitrary bytes as a recording's file, with a matching hash, so that the damage itself is parsed. They are
 /// rejected, or the result can be written and read again.
 fn parquet(bytes: &[u8]) {
-    let Ok(recording) = Recording::read_parquet(sealed(bytes.to_vec())) else { return };
+    let Ok(recording) = Recording::read_parquet(sealed(bytes.to_vec()), TO_THE_END) else { return };
     let mut written = Vec::new();
     recording.write_parquet(&mut written).expect("what was read can be written");
-    let again = Recording::read_parquet(written).expect("what was written can be read");
+    let again = Recording::read_parquet(written, TO_THE_END).expect("what was written can be read");
     assert_eq!(recording.first_difference(&again), None);
 }
 

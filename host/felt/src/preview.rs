@@ -8,6 +8,8 @@ use frixel_layers::{Button, Edge, Layer};
 use frixel_scene::reference::{Context, Reference};
 use frixel_scene::{Origin, Program, ROUNDING, Reach};
 
+use crate::GoesOn;
+
 /// Settings of a preview.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
@@ -93,20 +95,20 @@ pub struct FrictionMap {
 }
 
 impl FrictionMap {
-    /// Computes the map of a program.
+    /// Computes the map of a program. Once `goes_on` breaks, the rest of the map is missing.
     ///
     /// ```
     /// use std::collections::BTreeMap;
-    /// use frixel_felt::{FrictionMap, Preview};
+    /// use frixel_felt::{FrictionMap, Preview, TO_THE_END};
     /// use frixel_scene::{Scene, compile};
     /// # fn map(text: &str, limits: &frixel_wire::hello::BoardLimits) -> Result<(), frixel_scene::CompileError> {
     /// let program = compile(&Scene::parse(text, "grating.toml", &BTreeMap::new())?, limits, 40_000)?;
-    /// let map = FrictionMap::new(&program, &Preview::default());
+    /// let map = FrictionMap::new(&program, &Preview::default(), TO_THE_END);
     /// assert_eq!(map.parts_of_reach.len(), map.grid.width * map.grid.height);
     /// # Ok(())
     /// # }
     /// ```
-    pub fn new(program: &Program, preview: &Preview) -> Self {
+    pub fn new(program: &Program, preview: &Preview, goes_on: GoesOn<'_>) -> Self {
         let grid = MapGrid::new(program, preview.map_max);
         let reference = Reference::at_start(program).with_vibrations_held();
         let part = |(x_m, y_m): (f64, f64)| {
@@ -114,7 +116,8 @@ impl FrictionMap {
             let context = Context { x_m, y_m, speed_m_per_s, stream: 1.0, stream_weight: 1.0, ..Context::default() };
             reference.electric_friction_at_n(&context) / program.reach.electric_friction_max_n
         };
-        let parts_of_reach: Vec<f64> = grid.places_m().map(part).collect();
+        let places_m = grid.places_m().take_while(|_| goes_on().is_continue());
+        let parts_of_reach: Vec<f64> = places_m.map(part).collect();
         let caption = caption(program, preview, &parts_of_reach);
         Self { grid, parts_of_reach, caption }
     }

@@ -8,6 +8,7 @@ use std::process::Stdio;
 
 use frixel_felt::recorder::MarkedEvent;
 use frixel_lab::recording::{Recording, SourceFile, Values};
+use frixel_play::TO_THE_END;
 use tempfile::TempDir;
 
 use crate::processes::{frixel, repository, run, succeed};
@@ -32,7 +33,7 @@ fn folder() -> TempDir {
 }
 
 fn read(folder: &Path, name: &str) -> Recording {
-    Recording::read_parquet(fs::read(folder.join(name)).unwrap()).unwrap()
+    Recording::read_parquet(fs::read(folder.join(name)).unwrap(), TO_THE_END).unwrap()
 }
 
 fn write(folder: &Path, name: &str, recording: &Recording) {

@@ -28,6 +28,7 @@ use csv::{ByteRecord, Reader, ReaderBuilder};
 use encoding_rs::mem::decode_latin1;
 
 use crate::input::{ROWS_MAX, at_most, check_header};
+use frixel_play::TO_THE_END;
 use frixel_scene::{Nearest, brief};
 
 use crate::recording::{MAGIC, Recording};
@@ -126,7 +127,7 @@ impl<R: Read> Table<R> {
         let mut is_cut_off = false;
         if head.starts_with(MAGIC) {
             input.read_to_end(&mut head)?;
-            let recording = Recording::read_parquet(head).map_err(io::Error::other)?;
+            let recording = Recording::read_parquet(head, TO_THE_END).map_err(io::Error::other)?;
             is_cut_off = recording.is_cut_off;
             head = recording.to_csv();
         }

@@ -6,6 +6,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use super::error::{model_error, parameter_error};
+use super::signals::mapped;
 
 /// A finger on a coating, an object of `python/frixel/model.py`.
 #[derive(FromPyObject)]
@@ -81,25 +82,18 @@ pub(crate) fn eval_contact<'py>(
     normal_load_n: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<(States<'py>, Option<String>)> {
     let radius_m = contact.radius_m();
-    let (voltages, loads) = (voltage_v_rms.as_array().to_vec(), normal_load_n.as_array().to_vec());
-    let columns = py.detach(|| {
-        let contact = contact.checked()?;
-        let mut columns: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(voltages.len()));
-        for (voltage_v_rms, normal_load_n) in voltages.into_iter().zip(loads) {
-            let state = match contact.under_load(normal_load_n)?.state(voltage_v_rms) {
-                Ok(state) => {
-                    [state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, state.electric_friction_n]
-                }
-                Err(StateError::Parameter(error)) => return Err(error),
-                Err(_) => [f64::NAN; 4],
-            };
-            for (column, value) in columns.iter_mut().zip(state) {
-                column.push(value);
+    let contact = contact.checked().map_err(|error| parameter_error(py, error))?;
+    let state =
+        |&(voltage_v_rms, normal_load_n): &(f64, f64)| match contact.under_load(normal_load_n)?.state(voltage_v_rms) {
+            Ok(state) => {
+                Ok([state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, state.electric_friction_n])
             }
-        }
-        Ok(columns)
-    });
-    let columns = columns.map_err(|error| parameter_error(py, error))?;
+            Err(StateError::Parameter(error)) => Err(error),
+            Err(_) => Ok([f64::NAN; 4]),
+        };
+    let states = mapped(py, &pairs(&voltage_v_rms, &normal_load_n), state)?;
+    let states = states.map_err(|error| parameter_error(py, error))?;
+    let columns: [Vec<f64>; 4] = std::array::from_fn(|column| states.iter().map(|state| state[column]).collect());
     let doubt =
         wider_than_finger(columns[0].iter().filter(|contact_radius_m| **contact_radius_m > radius_m).count() as u64);
     Ok((columns.map(|column| column.into_pyarray(py)), doubt))
@@ -114,25 +108,27 @@ pub(crate) fn invert_contact<'py>(
     normal_load_n: PyReadonlyArray1<'py, f64>,
     is_electric: bool,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (frictions, loads) = (friction_n.as_array().to_vec(), normal_load_n.as_array().to_vec());
-    let voltages = py.detach(|| {
-        let contact = contact.checked()?;
-        let voltage = |(friction_n, normal_load_n): (f64, f64)| {
-            let loaded = contact.under_load(normal_load_n)?;
-            let voltage = if is_electric {
-                loaded.voltage_for_electric_friction(friction_n)
-            } else {
-                loaded.voltage_for_friction(friction_n)
-            };
-            match voltage {
-                Ok(voltage_v_rms) => Ok(voltage_v_rms),
-                Err(InverseError::Parameter(error)) => Err(error),
-                Err(_) => Ok(f64::NAN),
-            }
+    let contact = contact.checked().map_err(|error| parameter_error(py, error))?;
+    let voltage = |&(friction_n, normal_load_n): &(f64, f64)| {
+        let loaded = contact.under_load(normal_load_n)?;
+        let voltage = if is_electric {
+            loaded.voltage_for_electric_friction(friction_n)
+        } else {
+            loaded.voltage_for_friction(friction_n)
         };
-        frictions.into_iter().zip(loads).map(voltage).collect::<Result<Vec<f64>, ParameterError>>()
-    });
+        match voltage {
+            Ok(voltage_v_rms) => Ok(voltage_v_rms),
+            Err(InverseError::Parameter(error)) => Err(error),
+            Err(_) => Ok(f64::NAN),
+        }
+    };
+    let voltages = mapped(py, &pairs(&friction_n, &normal_load_n), voltage)?;
     Ok(voltages.map_err(|error| parameter_error(py, error))?.into_pyarray(py))
+}
+
+/// Values with the loads under which they are.
+fn pairs(values: &PyReadonlyArray1<'_, f64>, normal_load_n: &PyReadonlyArray1<'_, f64>) -> Vec<(f64, f64)> {
+    values.as_array().iter().copied().zip(normal_load_n.as_array().iter().copied()).collect()
 }
 
 /// Scales of voltage, friction and load of a finger on springs; `None` for a soft finger. Rejects parameters outside

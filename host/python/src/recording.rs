@@ -114,7 +114,7 @@ type Read<'py> = (Bound<'py, PyDict>, String, NamedFiles, [Profile; 2], String, 
 pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str) -> PyResult<Read<'py>> {
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (format!("{name}: {error}"),));
     let Recording { metadata, columns: read, is_cut_off } =
-        py.detach(|| Recording::read_parquet(recording)).map_err(|error| failed(&error))?;
+        interruptible(py, |goes_on| Recording::read_parquet(recording, goes_on))?.map_err(|error| failed(&error))?;
     let (found, values): (Vec<Field>, Vec<Values>) =
         read.into_iter().map(|Column { field, values }| (field, values)).unzip();
     if found != fields() {
@@ -149,7 +149,7 @@ pub(crate) fn read_parquet<'py>(py: Python<'py>, recording: Vec<u8>, name: &str)
 #[pyfunction]
 pub(crate) fn replay(py: Python<'_>, recording: Vec<u8>, name: &str) -> PyResult<usize> {
     let replayed = interruptible(py, |goes_on| {
-        let recorded = Recording::read_parquet(recording).map_err(|error| format!(": {error}"))?;
+        let recorded = Recording::read_parquet(recording, goes_on).map_err(|error| format!(": {error}"))?;
         let played = recorded.replay(goes_on);
         let played = played.map_err(|error| format!(" cannot be played again: {error}"))?;
         match recorded.first_difference(&played) {

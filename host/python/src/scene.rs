@@ -153,8 +153,9 @@ impl Scene {
         height: u32,
         speed_m_per_s: f64,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<String>)> {
-        let FrictionMap { grid, mut parts_of_reach, caption } =
-            py.detach(|| FrictionMap::new(&self.program, &Preview { speed_m_per_s, map_max: (width, height) }));
+        let FrictionMap { grid, mut parts_of_reach, caption } = interruptible(py, |goes_on| {
+            FrictionMap::new(&self.program, &Preview { speed_m_per_s, map_max: (width, height) }, goes_on)
+        })?;
         for part in &mut parts_of_reach {
             *part *= self.program.reach.electric_friction_max_n;
         }

@@ -19,6 +19,26 @@ pub(crate) fn raised_by_signal() -> Option<PyErr> {
     checked.err()
 }
 
+/// Number of values between checks of Python's signals; at most a tenth of a second.
+const CHUNK: usize = 4096;
+
+/// Maps values, until one fails or a signal is pending. A thread, as of [`interruptible`], would cost more than a value.
+pub(crate) fn mapped<T: Sync, U: Send, E: Send>(
+    py: Python<'_>,
+    values: &[T],
+    each: impl Fn(&T) -> Result<U, E> + Sync,
+) -> PyResult<Result<Vec<U>, E>> {
+    let mut mapped = Vec::with_capacity(values.len());
+    for chunk in values.chunks(CHUNK) {
+        py.check_signals()?;
+        match py.detach(|| chunk.iter().map(&each).collect::<Result<Vec<U>, E>>()) {
+            Ok(part) => mapped.extend(part),
+            Err(error) => return Ok(Err(error)),
+        }
+    }
+    Ok(Ok(mapped))
+}
+
 /// Runs `work` in another thread, while this thread checks Python's signals. On a signal, the [`GoesOn`] that `work`
 /// gets breaks, and the result is the exception of the signal.
 pub(crate) fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(GoesOn<'_>) -> T + Send) -> PyResult<T> {

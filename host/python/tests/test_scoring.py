@@ -107,11 +107,13 @@ def test_a_scene_that_is_none_or_refused_is_said() -> None:
         "frixel.sweep.cells({**plan, 'parameters': values})",
         # 499 tables of 40,000 means are drawn and fitted.
         "frixel.fit(means)",
+        "frixel.model.eval(soft, numpy.full(10_000_000, 150.0), 0.5)",
+        "frixel.Scene.from_dict(rough).map(10_000, 8_000)",
     ],
 )
 def test_an_interrupt_ends_long_work(work: str) -> None:
     program = (
-        "import frixel\nscene = {'layer': [{'kind': 'constant', 'friction_fraction': 0.5}]}\n"
+        "import frixel, numpy\nscene = {'layer': [{'kind': 'constant', 'friction_fraction': 0.5}]}\n"
         "plan = {'scenes': {'plate': scene}, 'people': 1, 'strokes': 1, 'seconds': 60, 'seeds': 100}\n"
         "values = {'layer.1.friction_fraction': {'from': 0.2, 'to': 0.3, 'count': 1000}}\n"
         "values['drive.voltage_max_v_rms'] = {'from': 40, 'to': 50, 'count': 250}\n"
@@ -119,6 +121,10 @@ def test_an_interrupt_ends_long_work(work: str) -> None:
         "volts = [0.0, 75.0, 106.0, 150.0] * 10000\n"
         "means = {'voltage_v_rms': volts, 'normal_force_n': [0.5] * 40000, 'friction_se_n': [0.01] * 40000}\n"
         "means['friction_n'] = [0.25 + 5e-6 * v**2 for v in volts]\n"
+        "soft = frixel.model.SoftContact(radius_m=8e-3, modulus_pa=1e5, stress_exponent=0.3, shape_constant=1.0, "
+        "friction_coefficient=0.4, gap_m=6e-6)\n"
+        "noise = {'kind': 'noise', 'wavelength_min_mm': 0.6, 'wavelength_max_mm': 1.5, 'low_fraction': 0.2}\n"
+        "rough = {'layer': [{**noise, 'high_fraction': 0.4, 'blend': 'add'}] * 4}\n"
         f"print('begun', flush=True)\ntry:\n    {work}\nexcept KeyboardInterrupt:\n    print('interrupted')\n"
     )
     child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)

@@ -1,6 +1,6 @@
 //! The friction map of a scene.
 
-use frixel_felt::{FrictionMap, Preview, ReachSide};
+use frixel_felt::{FrictionMap, Preview, ReachSide, TO_THE_END};
 
 use crate::host_error::HostError;
 use crate::program::drafted;
@@ -16,7 +16,7 @@ pub(crate) fn map(request: &Request) -> Result<Vec<u8>, HostError> {
     let (_, program) = drafted(request)?;
     let Numbers { width_px, height_px, speed_mm_per_s, .. } = request.numbers;
     let preview = Preview { speed_m_per_s: 1e-3 * speed_mm_per_s, map_max: (width_px.max(1), height_px.max(1)) };
-    let map = FrictionMap::new(&program, &preview);
+    let map = FrictionMap::new(&program, &preview, TO_THE_END);
     let reach = &program.reach;
     let head: [f64; MAP_HEAD.len()] =
         [map.grid.width as f64, map.grid.height as f64, reach.friction_min_n(), reach.friction_max_n()];

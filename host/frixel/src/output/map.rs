@@ -1,7 +1,7 @@
 //! Maps of a screen: a colour for every pixel, rulers in millimetres, and a colour scale in millinewtons.
 
 use frixel_chart::{Axis, Chart, Field, Margins, Panel, RGBColor, Raster, colour};
-use frixel_felt::{FrictionMap, MapGrid, Preview, ReachSide};
+use frixel_felt::{FrictionMap, MapGrid, Preview, ReachSide, TO_THE_END};
 use frixel_scene::{Program, Reach};
 
 /// Space around the map, below the title, in pixels.
@@ -20,7 +20,7 @@ const WHITE: RGBColor = RGBColor(255, 255, 255);
 /// it have the colour of the nearer end, and are hatched. The caption is that of the [`FrictionMap`]. Series drawn over
 /// the map are in millimetres.
 pub(super) fn chart(title: &str, program: &Program, preview: &Preview) -> Chart {
-    let FrictionMap { grid, parts_of_reach, caption } = FrictionMap::new(program, preview);
+    let FrictionMap { grid, parts_of_reach, caption } = FrictionMap::new(program, preview, TO_THE_END);
     let diagonal = |pixel: usize| pixel % grid.width + pixel / grid.width;
     let pixels = parts_of_reach.iter().enumerate().map(|(pixel, part)| colour_of(*part, diagonal(pixel)));
     let mut chart = chart_of(&grid, pixels.collect(), &program.reach);

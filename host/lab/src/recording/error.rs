@@ -28,6 +28,9 @@ pub enum RecordingError {
     /// It cannot be written.
     #[error("it cannot be written ({0})")]
     Write(ParquetError),
+    /// [`GoesOn`](frixel_play::GoesOn) broke before the result was complete.
+    #[error("interrupted")]
+    Interrupted,
     /// It is something else than a recording, or not as it was written, or too long to be read back.
     #[error("{0}")]
     Refused(String),

@@ -1,8 +1,9 @@
 //! Recordings from Parquet.
 
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use bytes::Bytes;
+use frixel_play::GoesOn;
 use frixel_scene::brief;
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -29,17 +30,17 @@ const TEXTS_MAX_BYTES: u64 = 256 << 20;
 
 impl Recording {
     /// Reads a Parquet file that [`ParquetWriter`](super::ParquetWriter) has written. If the writer of the file was
-    /// killed, reads the complete part.
-    pub fn read_parquet(bytes: impl Into<Bytes>) -> Result<Self, RecordingError> {
+    /// killed, reads the complete part. Fails as [`RecordingError::Interrupted`] once `goes_on` breaks.
+    pub fn read_parquet(bytes: impl Into<Bytes>, goes_on: GoesOn<'_>) -> Result<Self, RecordingError> {
         let bytes: Bytes = bytes.into();
         // The decoders of pages check what they read by assertions.
-        catch_unwind(|| read(&bytes)).unwrap_or_else(|_| {
+        catch_unwind(AssertUnwindSafe(|| read(&bytes, goes_on))).unwrap_or_else(|_| {
             Err(RecordingError::Damaged(ParquetError::General("its pages are not as their headers say".to_owned())))
         })
     }
 }
 
-fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
+fn read(bytes: &Bytes, goes_on: GoesOn<'_>) -> Result<Recording, RecordingError> {
     if bytes.is_empty() {
         return Err(RecordingError::refused("it is empty: give a recording that `frixel play --record` has written"));
     }
@@ -61,7 +62,7 @@ fn read(bytes: &Bytes) -> Result<Recording, RecordingError> {
     let mut text_bytes = 0;
     let columns = fields.into_iter().enumerate().map(|(index, field)| {
         let values = values(&file, index, &field, &mut text_bytes)?;
-        Ok(Column { field, values })
+        if goes_on().is_break() { Err(RecordingError::Interrupted) } else { Ok(Column { field, values }) }
     });
     let columns = columns.collect::<Result<Vec<_>, RecordingError>>()?;
     if columns.len() != file.metadata().file_metadata().schema_descr().num_columns() {

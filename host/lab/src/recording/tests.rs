@@ -2,6 +2,7 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use frixel_felt::recorder::{FeltRow, MarkedEvent, Marker};
+use frixel_play::TO_THE_END;
 use frixel_wire::fault::Flags;
 
 use super::*;
@@ -71,11 +72,11 @@ fn what_is_written_is_read_and_the_bytes_are_the_same_each_time() {
         let written = recording(count);
         let first = bytes(&written);
         assert_eq!(first, bytes(&written));
-        let read = Recording::read_parquet(first).unwrap();
+        let read = Recording::read_parquet(first, TO_THE_END).unwrap();
         assert_eq!(read, written);
         assert_eq!((read.rows(), read.first_difference(&written)), (count as usize, None));
     }
-    let read = Recording::read_parquet(bytes(&recording(3))).unwrap();
+    let read = Recording::read_parquet(bytes(&recording(3)), TO_THE_END).unwrap();
     let texts = Values::Texts(vec![None, Some("saturated+still".to_owned()), None]);
     assert_eq!(read.column("flags").unwrap().values, texts);
     assert_eq!(
@@ -164,12 +165,12 @@ fn a_writer_that_is_killed_loses_the_last_row_group() {
         (second, 200, false),
         (third, 300, false),
     ] {
-        let read = Recording::read_parquet(bytes[..len].to_vec()).unwrap();
+        let read = Recording::read_parquet(bytes[..len].to_vec(), TO_THE_END).unwrap();
         assert_eq!((read.rows(), read.is_cut_off), (rows, is_cut_off), "{len} bytes");
         let whole = Recording { is_cut_off, ..Recording::of_rows(metadata(false), &all[..rows]) };
         assert_eq!(read, whole, "{len} bytes");
     }
-    let truncated = Recording::read_parquet(bytes[..first - 1].to_vec()).unwrap_err().to_string();
+    let truncated = Recording::read_parquet(bytes[..first - 1].to_vec(), TO_THE_END).unwrap_err().to_string();
     assert!(truncated.contains("its end is missing"), "{truncated}");
     assert!(is_known(&bytes) && is_known(&bytes[..first]) && !is_known(&bytes[..first - 1]));
 }
@@ -213,7 +214,7 @@ fn a_recording_that_becomes_too_long_ends_readable() {
     let error = writer.write(&[Values::Integers(vec![None; 10_000_000])]).unwrap_err().to_string();
     assert!(error.contains("it would have 10000005 rows of 1 columns, and at most 10000000"), "{error}");
     writer.end(&metadata(true)).unwrap();
-    assert_eq!(Recording::read_parquet(std::mem::take(writer.get_mut())).unwrap().rows(), 5);
+    assert_eq!(Recording::read_parquet(std::mem::take(writer.get_mut()), TO_THE_END).unwrap().rows(), 5);
 }
 
 #[test]
@@ -250,7 +251,7 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
         (replaced("\"participant\":\"P07\"", "\"participant\":\"P08\""), "its content has another hash than it says"),
     ];
     for (bytes, says) in cases {
-        let error = Recording::read_parquet(bytes).unwrap_err().to_string();
+        let error = Recording::read_parquet(bytes, TO_THE_END).unwrap_err().to_string();
         assert!(error.contains(says) && error.contains(": "), "{says}: {error}");
     }
 }
@@ -263,10 +264,10 @@ fn a_damaged_file_is_refused() {
     for at in 0..own.len() {
         let mut damaged = own.clone();
         damaged[at] ^= 1 << (at % 8);
-        assert!(Recording::read_parquet(damaged.clone()).is_err(), "byte {at} of {}", own.len());
-        assert!(Recording::read_parquet(own[..at].to_vec()).is_err());
+        assert!(Recording::read_parquet(damaged.clone(), TO_THE_END).is_err(), "byte {at} of {}", own.len());
+        assert!(Recording::read_parquet(own[..at].to_vec(), TO_THE_END).is_err());
         if at < footer {
-            let _ = Recording::read_parquet(seal::sealed(damaged, footer));
+            let _ = Recording::read_parquet(seal::sealed(damaged, footer), TO_THE_END);
         }
     }
 }
@@ -277,7 +278,8 @@ fn a_damaged_file_is_refused() {
 fn few_ends_of_a_file_are_tried() {
     let own = bytes(&recording(20));
     let end = [&[0x15; 40][..], &40_u32.to_le_bytes(), parquet_reader::MAGIC].concat();
-    let with = |ends: usize, rest: &[u8]| Recording::read_parquet([&own, &*end.repeat(ends), rest].concat());
+    let with =
+        |ends: usize, rest: &[u8]| Recording::read_parquet([&own, &*end.repeat(ends), rest].concat(), TO_THE_END);
     assert!(with(15, b"P").unwrap().is_cut_off);
     for (ends, rest) in [(16, &b"P"[..]), (20_000, b"P"), (1, b""), (15, b"")] {
         let error = with(ends, rest).unwrap_err().to_string();

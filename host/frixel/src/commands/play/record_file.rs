@@ -126,6 +126,7 @@ mod tests {
     use std::fs;
 
     use frixel_lab::recording;
+    use frixel_play::TO_THE_END;
 
     use super::*;
 
@@ -141,7 +142,7 @@ mod tests {
     }
 
     fn read(path: &Path) -> recording::Recording {
-        recording::Recording::read_parquet(fs::read(path).unwrap()).unwrap()
+        recording::Recording::read_parquet(fs::read(path).unwrap(), TO_THE_END).unwrap()
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let path = &args.recording;
     let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(reading(path))?;
     note_interrupted(path, &bytes);
-    let recorded = Recording::read_parquet(bytes).map_err(at(path.display()))?;
+    let recorded = Recording::read_parquet(bytes, TO_THE_END).map_err(at(path.display()))?;
     let played = recorded.replay(TO_THE_END);
     let played = played.map_err(at(format!("{} cannot be played again", path.display())))?;
     if let Some(difference) = recorded.first_difference(&played) {
