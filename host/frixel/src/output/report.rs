@@ -9,7 +9,6 @@ use frixel_driver::{Counters, StreamStatus};
 
 use frixel_felt::judge::LayerVerdict;
 use frixel_felt::metrics::MetricsSummary;
-use frixel_felt::recorder::JUDGED_MAX_S;
 use frixel_lab::hash::sha256;
 use frixel_scene::{LayerTitle, Origin, Reach, TouchSource};
 
@@ -203,18 +202,6 @@ impl Report {
         }
     }
 
-    /// Sets the origin of the finger's numbers, by default assumed.
-    #[must_use]
-    pub(crate) fn with_origin(self, origin: Origin) -> Self {
-        Self { finger_origin: origin.word(), ..self }
-    }
-
-    /// Sets whether finger or board is simulated, by default true.
-    #[must_use]
-    pub(crate) fn with_simulated(self, simulated: bool) -> Self {
-        Self { simulated, ..self }
-    }
-
     /// Sets the simulated world, if there is one. The numbers of a random person are assumed, whatever the origin of
     /// the scene's finger.
     #[must_use]
@@ -225,12 +212,6 @@ impl Report {
         Self { world: world.map(|world| world.effects), touch_source, finger_seed, finger_origin, ..self }
     }
 
-    /// Sets the reasons for which a board refuses the scene. With a reason, the scene is a draft.
-    #[must_use]
-    pub(crate) fn with_refusals(self, board_refuses: Vec<String>) -> Self {
-        Self { draft: !board_refuses.is_empty(), board_refuses, ..self }
-    }
-
     /// Adds the status of the stream, if there was one.
     #[must_use]
     pub(crate) fn with_stream(mut self, stream: Option<StreamStatus>) -> Self {
@@ -238,25 +219,6 @@ impl Report {
         self.stream_underruns = stream.map(|stream| stream.underruns);
         self.stream_gaps = stream.map(|stream| stream.gaps);
         self
-    }
-
-    /// Adds the verdict on each layer, if the play was judged. The play lasted for `seconds`.
-    #[must_use]
-    pub(crate) fn with_verdicts(self, in_this_play: Option<Vec<LayerVerdict>>, seconds: f64) -> Self {
-        Self { in_this_play, is_judged_in_part: seconds > JUDGED_MAX_S, ..self }
-    }
-
-    /// Adds the reason for which there are no verdicts, and the layers that started off.
-    #[must_use]
-    pub(crate) fn with_notes(self, no_verdict: Option<&'static str>, starts_off: Option<String>) -> Self {
-        Self { no_verdict, starts_off, ..self }
-    }
-
-    /// Adds the layers of the last scene that the finger never touched, and the time at which that scene replaced
-    /// another, if it did.
-    #[must_use]
-    pub(crate) fn with_untouched(self, untouched_layers: Vec<LayerTitle>, replaced_at_s: Option<f64>) -> Self {
-        Self { untouched_layers, replaced_at_s, ..self }
     }
 
     /// The report as one JSON object on one line.

@@ -441,7 +441,8 @@ fn layers_that_were_never_touched_are_counted_from_the_last_replacement() {
     let title = |table, copy, name| LayerTitle::new(LayerNumber { table, copy }, Some(name), "button");
     let titles =
         [title(1, None, "base"), title(3, Some(1), "key 1"), title(3, Some(2), "key 2"), title(3, Some(3), "key 3")];
-    let summary = |replaced_at_s| report(&NOTHING).with_untouched(titles.to_vec(), replaced_at_s).summary(false);
+    let summary =
+        |replaced_at_s| Report { untouched_layers: titles.to_vec(), replaced_at_s, ..report(&NOTHING) }.summary(false);
     let layers = "never touched    layer 1 \"base\", layer 3.1 \"key 1\" with 2 more copies";
     assert!(summary(None).contains(&format!("{layers}\n")), "{}", summary(None));
     assert!(summary(Some(1.5)).contains(&format!("{layers}; since 1.50 s, when the scene was replaced\n")));

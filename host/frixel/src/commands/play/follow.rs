@@ -9,6 +9,7 @@ use crate::rigs::RecordedLink;
 use anyhow::{Result, bail};
 use frixel_driver::Device;
 use frixel_felt::judge::{in_play, starts_off};
+use frixel_felt::recorder::JUDGED_MAX_S;
 use frixel_lab::recording::{check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
@@ -193,20 +194,12 @@ impl<L: RecordedLink> Play<'_, L> {
                  lines after it were not carried out"
             ));
         }
-        let realtime_factor = target.is_virtual_time().then(|| played_s / playing.as_secs_f64());
-        let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor)
-            .with_origin(program.finger.origin)
-            .with_world(self.plan.world)
-            .with_simulated(self.outputs.is_simulated())
-            .with_stream(stream)
-            .with_refusals(self.refusals);
         let rows = recorder.take_rows();
         self.outputs.keep_samples(&recorder.take_samples());
         if let Some(lines) = self.control.as_ref().and_then(Control::kept) {
             self.outputs.keep_lines(lines);
         }
         let written = self.outputs.write(&rows, recorder.markers(), recorder.start_s().unwrap_or(0.0));
-        let report = report.with_untouched(self.outputs.untouched_layers(), self.outputs.replaced_at_s());
         let goes_on = || if is_requested { ControlFlow::Continue(()) } else { self.interrupt.goes_on() };
         let judged = recorder.take_judged();
         let no_verdict = match (&judged, stream) {
@@ -215,10 +208,23 @@ impl<L: RecordedLink> Play<'_, L> {
             (None, Some(_)) => Some("no study says what a person feels of a stream"),
             (None, None) => Some("something changed the scene while it played"),
         };
-        // A line may have switched them on.
-        let starts_off = starts_off(program).filter(|_| self.control.is_none());
-        let verdicts = judged.and_then(|samples| in_play(program, &samples, &goes_on));
-        let report = report.with_verdicts(verdicts, played_s).with_notes(no_verdict, starts_off);
+        let realtime_factor = target.is_virtual_time().then(|| played_s / playing.as_secs_f64());
+        let report = Report::new(target.name(), &recorder.summary(), &program.reach, &counters, realtime_factor);
+        let report = Report {
+            finger_origin: program.finger.origin.word(),
+            simulated: self.outputs.is_simulated(),
+            draft: !self.refusals.is_empty(),
+            board_refuses: self.refusals,
+            untouched_layers: self.outputs.untouched_layers(),
+            replaced_at_s: self.outputs.replaced_at_s(),
+            in_this_play: judged.and_then(|samples| in_play(program, &samples, &goes_on)),
+            is_judged_in_part: played_s > JUDGED_MAX_S,
+            no_verdict,
+            // A line may have switched them on.
+            starts_off: starts_off(program).filter(|_| self.control.is_none()),
+            ..report
+        };
+        let report = report.with_world(self.plan.world).with_stream(stream);
         let marked = (recorder.markers(), is_requested || ended.is_err());
         let finished = written.and_then(|()| self.outputs.finish(program, &report, marked));
         // Ctrl-C in a terminal also ends the emulator, which is not a failure.
