@@ -212,7 +212,8 @@ fn step_text(step: &Step, place: &str) -> String {
     format!("{} to {} mN{place}, {steps} Weber steps{down}{as_a_step}", millinewtons(*from_n), millinewtons(*to_n))
 }
 
-fn texture_text(texture: &Texture) -> String {
+/// A texture, in comparison with its threshold.
+pub fn texture_text(texture: &Texture) -> String {
     let Texture { frequency_hz, amplitude_n, threshold_n, natural_noise_n, verdict, .. } = texture;
     let threshold = match threshold_n {
         None => "with no known threshold".to_owned(),

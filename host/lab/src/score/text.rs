@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::fmt::Write;
 
+use frixel_felt::check::feel::texture_text;
 use frixel_felt::judge::{FLAT_WEBER_STEPS, weber_steps_text};
 use frixel_scene::{LayerTitle, fold_copies};
 
@@ -157,12 +158,7 @@ fn layer_text(layer: &LayerScore) -> String {
     let border = border
         .iter()
         .map(|border| format!("step onto it from {} {}{unit}", side(border), weber_steps_text(border.weber_steps)));
-    let texture = texture.iter().map(|texture| {
-        let threshold = texture.threshold_n.map_or("no threshold known".to_owned(), |threshold_n| {
-            format!("threshold about {:.1} mN", 1e3 * threshold_n)
-        });
-        format!("texture {:.1} mN at {:.0} Hz, {threshold}", 1e3 * texture.amplitude_n, texture.frequency_hz)
-    });
+    let texture = texture.iter().map(|texture| format!("texture {}", texture_text(texture)));
     let sizes: Vec<String> = contrast.into_iter().chain(border).chain(texture).collect();
     format!("felt by {}; {}", counts(simulated_fingers), sizes.join(", "))
 }
