@@ -6,6 +6,7 @@ use frixel_hil_sim::{Point, Stroke, StrokeError, StrokeRow};
 use thiserror::Error;
 
 use crate::fit::FORCE_MAX_N;
+use crate::recording::is_play_column;
 use crate::simulate::{STROKE_MAX_S, StrokeOptionsError};
 use crate::table::{Column, Place, Row, Table, TableError, Unit};
 
@@ -16,19 +17,6 @@ const Y: Column = Column::new("y_mm", "mm from the top edge of the screen").conv
 pub(crate) const LOAD: Column = Column::new("force_n", "newtons").converted(Unit::NEWTONS);
 /// The columns that a stroke needs.
 pub(crate) const COLUMNS: [Column; 3] = [TIME, X, Y];
-/// Columns of a play that a stroke does not need.
-const OF_A_PLAY: [&str; 10] = [
-    "speed_mm_s",
-    "reference_n",
-    "commanded_n",
-    "felt_n",
-    "natural_n",
-    "electrode_v_rms",
-    "voltage_v_rms",
-    "dac_code",
-    "flags",
-    "participant",
-];
 /// Largest first time that is on the stroke's own clock, s. Larger ones are uptime or Unix time.
 const START_MAX_S: f64 = 10.0;
 const MM_PER_M: f64 = 1e3;
@@ -84,7 +72,7 @@ impl StrokeFile {
         let places = [table.need(TIME)?, table.need(X)?, table.need(Y)?];
         let load = table.find(LOAD)?;
         let mut ignored_columns = table.ignored();
-        ignored_columns.retain(|name| !OF_A_PLAY.contains(&name.as_str()));
+        ignored_columns.retain(|name| !is_play_column(name));
         let mut understood = table.understood();
         let mut rows: Vec<StrokeRow> = Vec::new();
         while let Some(row) = table.next_row()? {

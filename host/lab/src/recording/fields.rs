@@ -132,6 +132,8 @@ enum Source {
     Text(fn(&FeltRow) -> Option<String>),
 }
 
+/// The column that `felt.csv` has besides, of a person's play.
+pub(super) const PARTICIPANT: &str = "participant";
 /// Name, unit, meaning and source of each column of a play.
 const PLAY: [(&str, &str, &str, Source); 12] = [
     ("t_s", "s", "time since the scene began to play, at the end of the row", Source::Number(|row| Some(row.t_s))),
@@ -180,6 +182,11 @@ pub fn calibration_fields(is_simulated: bool) -> Vec<Field> {
         (ORIGIN.name, "", "evidence for the forces: `assumed` of a simulated finger", Kind::Text),
     ];
     fields.into_iter().filter(|(name, ..)| is_simulated || *name != ORIGIN.name).map(Field::of).collect()
+}
+
+/// Whether a column is one of `felt.csv` or of a recording of a play.
+pub(crate) fn is_play_column(name: &str) -> bool {
+    name == PARTICIPANT || PLAY.iter().any(|(column, ..)| *column == name)
 }
 
 /// The columns of a play.

@@ -21,6 +21,7 @@ use frixel_felt::recorder::FeltRow;
 
 pub use claims::check_length;
 pub use error::RecordingError;
+pub(crate) use fields::is_play_column;
 pub use fields::{Field, Kind, Values, calibration_fields, play_fields, play_values, stroke_fields};
 pub use metadata::{BoardIdentity, GrowingFile, LaterScene, Metadata, SourceFile};
 pub use of_person::is_of_person;

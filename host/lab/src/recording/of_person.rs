@@ -3,12 +3,11 @@
 use std::io::{self, Read, Seek, SeekFrom};
 
 use super::claims::FOOTER_MAX_BYTES;
+use super::fields::PARTICIPANT;
 use super::parquet_reader::{MAGIC, is_footer_of_person};
 use crate::table::{Column, HEAD_BYTES, Table, TableError};
 use crate::{fit, stroke_file};
 
-/// The column that a person's play adds to those of a stroke.
-const PARTICIPANT: &str = "participant";
 /// A line, without blanks, of a profile based on a person's perception.
 const PERCEPTUAL: &str = "origin=\"perceptual\"";
 /// A part of the summary of a person's play.
