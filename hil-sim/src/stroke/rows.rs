@@ -97,11 +97,6 @@ impl Rows {
         self.segments.get(started.checked_sub(1)?).filter(|segment| t_s <= segment.end_s)
     }
 
-    /// Whether the rows state the normal load.
-    pub(super) fn has_loads(&self) -> bool {
-        self.has_loads
-    }
-
     /// Returns the normal load at a time up to the end, in N, if the rows state it.
     pub(super) fn normal_load_n(&self, t_s: f64) -> Option<f64> {
         let segment = if self.has_loads { self.segment(t_s)? } else { return None };

@@ -6,7 +6,7 @@ use frixel_felt::metrics::ErrorSize;
 use frixel_felt::recorder::JUDGED_MAX_S;
 use frixel_scene::{LayerTitle, Origin, fold_copies};
 
-use super::report::{Effects, Report};
+use super::report::Report;
 
 impl Report {
     /// The report as lines of text, each ending in a line feed: what the finger felt, and the friction error. With
@@ -59,8 +59,7 @@ impl Report {
         };
         let reachable = ("reachable", range(self.reachable_min_n, self.reachable_max_n) + at_load);
         let reference = self.reference_min_n.zip(self.reference_max_n).map(|(least, most)| {
-            let is_ideal = self.world.is_none_or(|world| world == Effects::None);
-            let turns = if is_ideal { "" } else { "; not where the finger lands or turns" };
+            let turns = if self.world.is_some() { "; not where the finger lands or turns" } else { "" };
             ("reference", format!("{}{with_load}{turns}", range(least, most)))
         });
         let inversion = size(self.inversion_error_rms_n, self.inversion_error_max_n);

@@ -103,8 +103,7 @@ impl PlayOptions {
             seconds,
             seed: self.seed,
             ticks_per_row,
-            // In steady sliding, the simulated finger is then more than the scene's under its load.
-            through_finger: !self.ideal || world.finger.is_some() || stroke.has_loads(),
+            through_finger: true,
             stroke,
         })
     }
