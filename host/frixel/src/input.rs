@@ -1,30 +1,15 @@
 //! Input of the command: regular files and standard input, each up to a stated size.
 
-use std::io::{self, BufRead, Read};
-use std::path::Path;
+use std::io::{self, BufRead};
 
 pub(crate) use frixel_lab::input::{
-    Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, whole_lines,
+    Bounded, CSV_MAX_BYTES, PICTURE_MAX_BYTES, TOML_MAX_BYTES, open, read, read_toml, whole_lines,
 };
 
 /// Largest WAV file: 12 minutes of 44.1 kHz, 16 bits, stereo.
 pub(crate) const WAV_MAX_BYTES: u64 = 128 << 20;
 /// Longest line read from standard input, in bytes; the rest of a longer line is dropped.
 pub(crate) const LINE_MAX_BYTES: usize = 4096;
-
-/// Reads a regular file of at most `max_bytes` bytes of UTF-8 text.
-pub(crate) fn read_text(path: &Path, max_bytes: u64) -> io::Result<String> {
-    let mut text = String::new();
-    open(path, max_bytes)?.read_to_string(&mut text)?;
-    Ok(text)
-}
-
-/// Reads the first bytes of a regular file of any size, at most `max_bytes` of them.
-pub(crate) fn read_head(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
-    let mut head = Vec::new();
-    open(path, u64::MAX)?.take(max_bytes).read_to_end(&mut head)?;
-    Ok(head)
-}
 
 /// Reads the next line, without its line ending; `None` at the end of the input or on a read error. Drops bytes beyond
 /// [`LINE_MAX_BYTES`], and replaces bytes that are not UTF-8.
@@ -59,7 +44,7 @@ fn text(line: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{BufReader, repeat};
+    use std::io::{BufReader, Read, repeat};
 
     use super::*;
 

@@ -29,7 +29,7 @@ fn main() -> ExitCode {
 fn play() -> Result<(), Box<dyn Error>> {
     let path = PathBuf::from(env::args().nth(1).ok_or("give the path of a scene, for example scenes/brick.toml")?);
     let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let scene = Scene::parse_bytes(&bytes, &path.display().to_string(), &SceneFolder::of(&path))?;
+    let scene = Scene::parse(&bytes, &path.display().to_string(), &SceneFolder::of(&path))?;
 
     // A program is compiled for the limits of one board: here the simulated one, in a world with noise and losses.
     let rig = RigConfig::default().with(&WorldOptions::default());

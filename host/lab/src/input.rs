@@ -12,7 +12,7 @@ use thiserror::Error;
 use unicode_normalization::UnicodeNormalization;
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use file::{open, read, read_named};
+pub use file::{open, read, read_named, read_toml};
 pub use frixel_scene::TEXT_MAX_BYTES as TOML_MAX_BYTES;
 use frixel_scene::TILDE_ADVICE;
 #[cfg(not(target_arch = "wasm32"))]

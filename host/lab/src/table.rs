@@ -29,7 +29,7 @@ use encoding_rs::mem::decode_latin1;
 
 use crate::input::{ROWS_MAX, at_most, check_header};
 use frixel_play::TO_THE_END;
-use frixel_scene::{Nearest, brief};
+use frixel_scene::{FileKind, Nearest, WrongKind, brief, check_toml};
 
 use crate::recording::{MAGIC, Recording};
 
@@ -113,9 +113,21 @@ pub struct Table<R> {
     asked: Vec<bool>,
     /// Columns whose header states the unit differently from the requested name.
     stated: Vec<String>,
+    kind: Option<FileKind>,
     /// Rows that were read.
     rows: u64,
     cells: ByteRecord,
+}
+
+/// Refuses pictures, zips, and whole TOML files. What instruments write above a header may look like a field.
+fn refuse_other_kinds(head: &[u8], is_whole: bool) -> Result<(), TableError> {
+    let is_toml = |text: &str| check_toml(text).is_ok() && toml::from_str::<toml::Table>(text).is_ok();
+    let is_other = |kind: &FileKind| match kind {
+        FileKind::Picture | FileKind::Zip => true,
+        _ => is_whole && str::from_utf8(head).is_ok_and(is_toml),
+    };
+    let wrong = FileKind::of(head).filter(is_other).map(|found| WrongKind { found, expected: FileKind::Table });
+    wrong.map_or(Ok(()), |wrong| Err(wrong.into()))
 }
 
 impl<R: Read> Table<R> {
@@ -132,12 +144,14 @@ impl<R: Read> Table<R> {
             head = recording.to_csv();
         }
         let is_whole = (head.len() as u64) < HEAD_BYTES;
+        refuse_other_kinds(&head, is_whole)?;
         if head.starts_with(BYTE_ORDER_MARK) {
             head.drain(..BYTE_ORDER_MARK.len());
         }
         if !is_whole && !head.iter().any(|byte| matches!(byte, b'\n' | b'\r')) {
             return Err(TableError::no_table(format!("the first line has more than {HEAD_BYTES} bytes")));
         }
+        let kind = FileKind::of(&head);
         let (dialect, found) = Dialect::of(&mut head, is_whole, input.order())?;
         let (units, mut layout) = (found.units().to_vec(), found.words(&head));
         layout.extend(is_cut_off.then(|| "the recording was cut off, and ends with its last whole rows".to_owned()));
@@ -150,7 +164,8 @@ impl<R: Read> Table<R> {
         check_header(header.iter()).map_err(io::Error::from)?;
         let names: Vec<String> = header.iter().map(name).collect();
         let asked = vec![false; names.len()];
-        Ok(Self { reader, dialect, asked, names, units, layout, stated: Vec::new(), rows: 0, cells: ByteRecord::new() })
+        let (stated, rows, cells) = (Vec::new(), 0, ByteRecord::new());
+        Ok(Self { reader, dialect, asked, names, units, layout, kind, stated, rows, cells })
     }
 
     /// How the table is written.
@@ -253,6 +268,12 @@ impl<R: Read> Table<R> {
     pub(crate) fn missing(&self, columns: &[Column]) -> TableError {
         if self.names.is_empty() {
             return TableError::no_table("the table is empty");
+        }
+        let expected = columns.iter().find_map(|column| FileKind::of_column(column.name));
+        if let (Some(found @ (FileKind::Calibration | FileKind::Stroke)), Some(expected)) = (self.kind, expected)
+            && found != expected
+        {
+            return WrongKind { found, expected }.into();
         }
         let ignored = self.ignored();
         let nearest = |column: &Column| Nearest::new(column.name, ignored.iter().map(String::as_str)).suggestion;

@@ -9,7 +9,7 @@ use frixel_felt::{FrictionMap, Preview};
 use frixel_hil_sim::{RigConfig, WorldOptions};
 use frixel_lab::input::{KeptFiles, SceneFolder};
 use frixel_play::{board_costs, judge};
-use frixel_scene::{CompileError, Program, Scene as ParsedScene, compile, compile_draft, is_picture, picture_sentence};
+use frixel_scene::{CompileError, Program, Scene as ParsedScene, compile, compile_draft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -69,12 +69,9 @@ impl Scene {
     ) -> PyResult<Self> {
         let screen = screen.map(|screen| Ok::<_, PyErr>((screen.read(py)?, screen))).transpose()?;
         let finger = finger.map(|finger| Ok::<_, PyErr>((finger.read(py)?, finger))).transpose()?;
-        if is_picture(&text) {
-            return Err(raised(py, "SceneError", (picture_sentence(&name),)));
-        }
         let read = py.detach(|| {
             let files = KeptFiles::new(folder.map(SceneFolder), files);
-            let mut parsed = ParsedScene::parse_bytes(&text, &name, &files)?;
+            let mut parsed = ParsedScene::parse(&text, &name, &files)?;
             let (mut own_finger, mut own_screen) = (None, None);
             if let Some((screen, text)) = screen {
                 parsed = parsed.with_screen(screen, text.name());

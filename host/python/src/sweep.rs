@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::io;
 use std::path::{Path, PathBuf};
 
-use frixel_lab::input::{KeptFiles, SceneFolder, TOML_MAX_BYTES, read};
+use frixel_lab::input::{KeptFiles, SceneFolder, read_toml};
 use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, Sweep, json};
-use frixel_scene::Scene as ParsedScene;
+use frixel_scene::{CompileError, FileKind, Scene as ParsedScene};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
@@ -33,7 +32,7 @@ impl From<PlanError> for Raised {
 #[pyfunction]
 pub(crate) fn sweep_cells(
     py: Python<'_>,
-    plan: &str,
+    plan: &[u8],
     name: &str,
     folder: PathBuf,
     scenes: BTreeMap<String, (String, NamedFiles)>,
@@ -44,7 +43,7 @@ pub(crate) fn sweep_cells(
             Some((text, files)) => Ok(Source::new(name, text.clone(), files.clone())),
             None => source_in(&folder, name),
         };
-        let sweep = Sweep::new(plan, source, |what, name| text_in(&folder, what, name))?;
+        let sweep = Sweep::new(plan, source, |kind, name| text_in(&folder, kind, name))?;
         for number in sweep.samples().into_iter().take_while(|_| goes_on().is_continue()) {
             let cell = sweep.cell(number)?;
             cell.check().map_err(|error| Raised(Python::attach(|py| exception(py, &cell, error))))?;
@@ -58,23 +57,28 @@ pub(crate) fn sweep_cells(
 /// A scene file with the files that it names.
 fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let path = folder.join(name);
-    let bytes = read(&path, TOML_MAX_BYTES).map_err(|error| {
+    let bytes = read_toml(&path).map_err(|error| {
         unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
     })?;
     let files = KeptFiles::new(Some(SceneFolder::of(&path)), NamedFiles::new());
     let mistakes = |error| Raised(Python::attach(|py| scene_error(py, &error)));
-    ParsedScene::parse_bytes(&bytes, name, &files).map_err(mistakes)?;
+    ParsedScene::parse(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     Ok(Source::new(name, text, files.into_kept()))
 }
 
 /// The text of the file of a screen or a touch source.
-fn text_in(folder: &Path, what: &str, name: &str) -> Result<String, Raised> {
+fn text_in(folder: &Path, kind: FileKind, name: &str) -> Result<String, Raised> {
     let path = folder.join(name);
     let advice = "give its file, from the plan's folder, or a bundled one";
-    read(&path, TOML_MAX_BYTES)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other))
-        .map_err(|error| unreadable(format_args!("{what} {}: {error}; {advice}", path.display())))
+    let bytes = read_toml(&path)
+        .map_err(|error| unreadable(format_args!("{} {}: {error}; {advice}", kind.word(), path.display())))?;
+    kind.text(&bytes, name).map(str::to_owned).map_err(mistakes)
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "a function for `map_err`")]
+fn mistakes(error: CompileError) -> Raised {
+    Raised(Python::attach(|py| scene_error(py, &error)))
 }
 
 fn unreadable(sentence: impl Display) -> Raised {

@@ -183,6 +183,9 @@ def test_a_plan_with_a_mistake_is_refused(fields: dict[str, Any], sentence: str)
 def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="this plan cannot be read"):
         sweep.cells(tmp_path / "nowhere.toml")
+    (tmp_path / "finger.toml").write_text("friction_coefficient = 0.5\n")
+    with pytest.raises(ParameterError, match="this is a finger profile; expected a plan of a sweep: pass it with --finger"):
+        sweep.cells(tmp_path / "finger.toml")
     with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")
     with pytest.raises(ParameterError, match=r"a cell is a text made by `sweep\.cells`, found 3"):

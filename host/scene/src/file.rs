@@ -8,6 +8,7 @@ use toml::de::DeTable;
 use super::compile_error::CompileError;
 use super::diagnostic::Diagnostic;
 use super::fields::{Fields, PixelSize, all, parsed};
+use super::file_kind::FileKind;
 use super::files::{FileUnavailable, Files};
 use super::finger::FingerProfile;
 use super::grammar::KnownTable;
@@ -109,14 +110,15 @@ impl Design {
 }
 
 impl Scene {
-    /// Reads the text of a scene file. Messages call the file `name`; `files` provides the pictures, the profiles and
+    /// Reads the text or the bytes of a scene file. Messages call the file `name`; `files` provides the pictures, the profiles and
     /// the included files that the file names.
     ///
     /// # Errors
     ///
-    /// Fails if the text is not TOML, or if a part outside the layers has mistakes. Mistakes of layers are reported by
+    /// Fails if the file is of another kind or not TOML, or if a part outside the layers has mistakes. Mistakes of layers are reported by
     /// [`super::compile`], together with its own.
-    pub fn parse(text: &str, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
+    pub fn parse(text: impl AsRef<[u8]>, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
+        let text = FileKind::Scene.text(text.as_ref(), name)?;
         let Gathered { source, mistakes } = include::gather(name, text, files);
         let mut log = Log::new(&source);
         for (offset, mistake) in mistakes {
@@ -127,20 +129,6 @@ impl Scene {
         let Some(mut scene) = scene else { return Err(CompileError::new(name.to_owned(), mistakes)) };
         scene.mistakes = mistakes;
         Ok(scene)
-    }
-
-    /// Reads the bytes of a scene file. See [`Self::parse`].
-    pub fn parse_bytes(bytes: &[u8], name: &str, files: &dyn Files) -> Result<Self, CompileError> {
-        match std::str::from_utf8(bytes) {
-            Ok(text) => Self::parse(text, name, files),
-            Err(error) => {
-                let text = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
-                let source = Source::new(name, &text);
-                let mut log = Log::new(&source);
-                log.add(error.valid_up_to(), FileMistake::NotUtf8);
-                log.finish(None)
-            }
-        }
     }
 
     /// The scene with another finger, from a file or bundled profile called `name`.

@@ -2,6 +2,7 @@
 
 use toml::de::DeValue;
 
+use super::file_kind::FileKind;
 use super::files::{FileUnavailable, Files, file_name};
 use super::mistake::FileMistake;
 use super::nearest::Nearest;
@@ -82,6 +83,7 @@ impl Gathered {
                 nearest: Nearest::file(file_name(path), &scenes(files)),
             },
         })?;
+        FileKind::Scene.check(&bytes).map_err(|wrong| unusable(wrong.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
         Ok(self.source.add(included, path.to_owned(), text))
     }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::compile_error::CompileError;
+use super::file_kind::FileKind;
 use super::nearest::Nearest;
 use super::printable::brief;
 
@@ -17,8 +18,8 @@ use super::printable::brief;
 /// assert!(FingerProfile::parse("radius = 8", "mine.toml").is_err());
 /// ```
 pub trait Profile: Sized {
-    /// Its kind in messages: `finger`, `screen` or `touch source`.
-    const KIND: &'static str;
+    /// The kind of its file.
+    const KIND: FileKind;
 
     /// The names of the bundled ones, the default first.
     fn bundled_names() -> Vec<&'static str>;
@@ -26,8 +27,8 @@ pub trait Profile: Sized {
     /// The bundled one of a name.
     fn bundled(name: &str) -> Option<Self>;
 
-    /// Reads the text of a file. Messages call the file `name`.
-    fn parse(text: &str, name: &str) -> Result<Self, CompileError>;
+    /// Reads the text or the bytes of a file. Messages call the file `name`.
+    fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, CompileError>;
 }
 
 /// A profile as users name it.
@@ -72,7 +73,7 @@ impl NamedProfile {
         match text {
             Some(text) => Ok(P::parse(text, name)?),
             None => P::bundled(name).ok_or_else(|| ProfileError::NotBundled {
-                kind: P::KIND,
+                kind: P::KIND.word(),
                 name: name.clone(),
                 nearest: Nearest::new(name, P::bundled_names()),
             }),

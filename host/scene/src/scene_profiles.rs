@@ -80,7 +80,7 @@ impl<P: Profile> ProfileField<P> {
 
 /// The bundled profile of a name, or the profile in a file.
 fn named<P: Profile>(name: &str, files: &dyn Files) -> Result<P, FileMistake> {
-    let what = P::KIND;
+    let what = P::KIND.word();
     if !is_file_name(name) {
         return P::bundled(name).ok_or_else(|| FileMistake::UnknownProfile {
             what,
@@ -90,8 +90,7 @@ fn named<P: Profile>(name: &str, files: &dyn Files) -> Result<P, FileMistake> {
     }
     let unusable = |reason: String| FileMistake::FileUnusable { what, file: name.to_owned(), reason };
     let bytes = files.bytes(name).map_err(|unavailable| FileMistake::unavailable(what, name, &unavailable))?;
-    let text = String::from_utf8(bytes).map_err(|_| unusable(FileMistake::NotUtf8.to_string()))?;
-    P::parse(&text, name).map_err(|mistakes| unusable(mistakes.to_string().replace('\n', "; ")))
+    P::parse(bytes, name).map_err(|mistakes| unusable(mistakes.to_string().replace('\n', "; ")))
 }
 
 /// The path of a file named at an offset, relative to the scene file's folder, or the name of a bundled profile.

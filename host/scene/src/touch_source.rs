@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::compile_error::CompileError;
 use super::fields::{Fields, read_text};
+use super::file_kind::FileKind;
 use super::log::Log;
 use super::profile::Profile;
 use super::tables::touch_source as fields_of;
@@ -82,7 +83,7 @@ impl Display for TouchSource {
 /// # Ok::<(), frixel_scene::CompileError>(())
 /// ```
 impl Profile for TouchConfig {
-    const KIND: &'static str = "touch source";
+    const KIND: FileKind = FileKind::TouchSource;
 
     fn bundled_names() -> Vec<&'static str> {
         Self::bundled_names().collect()
@@ -92,8 +93,8 @@ impl Profile for TouchConfig {
         Self::bundled(name)
     }
 
-    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this touch source", read)
+    fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, CompileError> {
+        read_text(Self::KIND, text.as_ref(), name, read)
     }
 }
 

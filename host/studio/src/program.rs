@@ -40,7 +40,7 @@ pub(crate) fn touch_source(request: &Request) -> Result<TouchConfig, ProgramErro
 
 /// The scene of a request, with its finger and its screen.
 fn scene(request: &Request) -> Result<Scene, ProgramError> {
-    let mut scene = Scene::parse_bytes(request.scene()?, &request.entry, &request.files)?;
+    let mut scene = Scene::parse(request.scene()?, &request.entry, &request.files)?;
     if let Some(screen) = &request.screen {
         scene = scene.with_screen(given(screen)?, name_of::<Screen>(screen));
     }
@@ -52,10 +52,10 @@ fn scene(request: &Request) -> Result<Scene, ProgramError> {
 
 /// A profile of a request: the name of a bundled one, or the text of a file.
 fn given<P: Profile>(given: &str) -> Result<P, CompileError> {
-    P::bundled(given).map_or_else(|| P::parse(given, P::KIND), Ok)
+    P::bundled(given).map_or_else(|| P::parse(given, P::KIND.word()), Ok)
 }
 
 /// Its name in messages.
 fn name_of<P: Profile>(given: &str) -> &str {
-    if P::bundled(given).is_some() { given } else { P::KIND }
+    if P::bundled(given).is_some() { given } else { P::KIND.word() }
 }

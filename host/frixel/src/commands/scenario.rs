@@ -89,12 +89,11 @@ fn print(outcome: &ScenarioOutcome) -> Result<()> {
 }
 
 fn read(file: &Path) -> Result<Scenario> {
-    let bytes = input::read(file, input::TOML_MAX_BYTES).map_err(|error| {
+    let bytes = input::read_toml(file).map_err(|error| {
         let advice = check_path(file, "check the path");
         anyhow!("{}: this scenario cannot be read ({error}): {advice}", file.display())
     })?;
-    let text = String::from_utf8_lossy(&bytes);
-    Ok(Scenario::parse(&text, &file.display().to_string())?)
+    Ok(Scenario::parse(bytes, &file.display().to_string())?)
 }
 
 /// The scenes of a scenario, whose files are named relative to its folder.

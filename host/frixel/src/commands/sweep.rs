@@ -10,6 +10,7 @@ use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use frixel_lab::sweep::{CELLS, CellResult, Index, Plan, Study, Sweep, json};
 use frixel_play::TO_THE_END;
+use frixel_scene::FileKind;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
@@ -67,7 +68,7 @@ pub(super) fn run(args: &SweepArgs) -> Result<()> {
 }
 
 fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
-    let text = input::read_text(plan_path, input::TOML_MAX_BYTES);
+    let text = input::read_toml(plan_path);
     let text = text.map_err(|error| unreadable(plan_path, "plan", &error, "check the path"))?;
     let plan = Plan::parse(&text, &plan_path.display().to_string())?;
     let folder = plan_path.parent().unwrap_or(Path::new(""));
@@ -124,11 +125,11 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
 
 /// A plan with its files, which are named relative to its folder.
 fn gather(plan: Plan, folder: &Path) -> Result<Sweep> {
-    let text = |what, name: &str| {
+    let text = |kind: FileKind, name: &str| {
         let path = folder.join(name);
         let advice = "give its file, from the plan's folder, or a bundled one";
-        let read = input::read_text(&path, input::TOML_MAX_BYTES);
-        read.map_err(|error| unreadable(&path, what, &error, advice))
+        let bytes = input::read_toml(&path).map_err(|error| unreadable(&path, kind.word(), &error, advice))?;
+        Ok(kind.text(&bytes, name)?.to_owned())
     };
     Sweep::new(plan, |name| Ok(gathered(&folder.join(name), name)?), text)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde_json::{Error, Value, from_str, from_value};
+use serde_json::{Error, Value, from_slice, from_value};
 
 use super::error::ReportError;
 use crate::input;
@@ -23,18 +23,18 @@ pub(super) struct Counts {
 impl Counts {
     /// Reads a file of counts.
     pub(super) fn read(path: &Path) -> Result<Self, ReportError> {
-        let text = input::read_text(path, input::TOML_MAX_BYTES)
+        let text = input::read(path, input::TOML_MAX_BYTES)
             .map_err(|source| ReportError::ReadBench { path: path.to_owned(), source })?;
         Self::parse(&text).map_err(|source| ReportError::Bench { path: path.to_owned(), source })
     }
 
     /// The counts of this version.
     pub(super) fn committed() -> Result<Self, ReportError> {
-        Self::parse(COMMITTED).map_err(|source| ReportError::Bench { path: "bench.json".into(), source })
+        Self::parse(COMMITTED.as_bytes()).map_err(|source| ReportError::Bench { path: "bench.json".into(), source })
     }
 
-    fn parse(text: &str) -> Result<Self, Error> {
-        let mut object: BTreeMap<String, Value> = from_str(text)?;
+    fn parse(text: &[u8]) -> Result<Self, Error> {
+        let mut object: BTreeMap<String, Value> = from_slice(text)?;
         let date = object.remove("date").map(from_value).transpose()?.unwrap_or_default();
         let counts = object.into_iter().map(|(name, value)| Ok((name, from_value(value)?)));
         Ok(Self { date, counts: counts.collect::<Result<_, Error>>()? })

@@ -12,7 +12,7 @@ use frixel_lab::input::{KeptFiles, SceneFolder, check_path};
 use frixel_lab::sweep::Source;
 use frixel_scene::{
     CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE,
-    compile, is_picture, picture_sentence,
+    compile,
 };
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
@@ -21,9 +21,6 @@ use crate::input;
 
 pub(crate) use files::SceneFiles;
 pub(crate) use saved_file::CHECK_PERIOD;
-
-/// Number of first bytes of a file that identify a picture.
-const SIGNATURE_BYTES: u64 = 8;
 
 /// A scene without friction of its own.
 const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fraction = 0.0\n";
@@ -38,12 +35,6 @@ pub enum SceneFileError {
         file: String,
         /// Error of the operating system.
         source: io::Error,
-    },
-    /// The scene file is a picture.
-    #[error("{}", picture_sentence(file))]
-    Picture {
-        /// Path of the picture, as the caller gave it.
-        file: String,
     },
     /// The file of a finger, a screen or a touch source could not be read.
     #[error("{file}: this {what} cannot be read ({source}): {}", profile_advice(.nearest, .file))]
@@ -70,7 +61,6 @@ impl SceneFileError {
             Self::Unreadable { file, source } | Self::UnreadableProfile { file, source, .. } => {
                 (file, source.to_string())
             }
-            Self::Picture { file } => (file, "it is a picture".to_owned()),
             Self::Compile(error) => return error.to_json(),
         };
         serde_json::json!({ "file": file, "unreadable": reason, "mistakes": [], "has_more": false }).to_string()
@@ -108,7 +98,7 @@ pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Sc
         Ok(bytes) => {
             files.keep_scene(&bytes);
             let named = NamedFiles { folder: SceneFolder::of(path), files: RefCell::new(files) };
-            let scene = Scene::parse_bytes(&bytes, &file, &named).map_err(SceneFileError::from);
+            let scene = Scene::parse(&bytes, &file, &named).map_err(SceneFileError::from);
             (scene, named.files.into_inner())
         }
         Err(error) => (Err(error), files),
@@ -118,11 +108,7 @@ pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, Sc
 /// The bytes of a scene file.
 fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
     let file = path.display().to_string();
-    // Checked first, since a photograph may be larger than the limit of scenes.
-    if input::read_head(path, SIGNATURE_BYTES).is_ok_and(|head| is_picture(&head)) {
-        return Err(SceneFileError::Picture { file });
-    }
-    input::read(path, input::TOML_MAX_BYTES).map_err(|source| SceneFileError::Unreadable { file, source })
+    input::read_toml(path).map_err(|source| SceneFileError::Unreadable { file, source })
 }
 
 /// Reads a scene file with the bytes of the files that it names, for a play without these files. `name` is its name in
@@ -131,7 +117,7 @@ pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError
     let file = path.display().to_string();
     let bytes = read(path)?;
     let kept = KeptFiles::new(Some(SceneFolder::of(path)), BTreeMap::new());
-    Scene::parse_bytes(&bytes, &file, &kept)?;
+    Scene::parse(&bytes, &file, &kept)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     Ok(Source::new(name, text, kept.into_kept()))
 }
@@ -210,13 +196,12 @@ pub(crate) fn profile<P: Profile>(name: &str) -> Result<P, SceneFileError> {
         return Ok(profile);
     }
     let unreadable = |source| SceneFileError::UnreadableProfile {
-        what: P::KIND,
+        what: P::KIND.word(),
         file: name.to_owned(),
         nearest: Nearest::new(name, P::bundled_names()),
         source,
     };
-    let text = input::read_text(Path::new(name), input::TOML_MAX_BYTES).map_err(unreadable)?;
-    Ok(P::parse(&text, name)?)
+    Ok(P::parse(input::read_toml(Path::new(name)).map_err(unreadable)?, name)?)
 }
 
 #[cfg(test)]

@@ -7,7 +7,12 @@ use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
+use frixel_scene::FileKind;
+
 use super::{Bounded, InputError, PICTURE_MAX_BYTES, TOML_MAX_BYTES};
+
+/// Number of first bytes of a file that tell its kind.
+const HEAD_BYTES: u64 = 4096;
 
 /// Opens a regular file of at most `max_bytes` bytes. Reading beyond them is an error.
 pub fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
@@ -35,10 +40,24 @@ pub fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Reads a file of TOML text. A larger file of another kind, such as a photograph, is read in part: its reader names
+/// the kind.
+pub fn read_toml(path: &Path) -> io::Result<Vec<u8>> {
+    let whole = read(path, TOML_MAX_BYTES);
+    if whole.is_err() {
+        let mut head = Vec::new();
+        open(path, u64::MAX)?.take(HEAD_BYTES).read_to_end(&mut head)?;
+        if FileKind::of(&head).is_some() {
+            return Ok(head);
+        }
+    }
+    whole
+}
+
 /// Reads a file that a scene names: text that is a part of it, or a picture.
 pub fn read_named(path: &Path) -> io::Result<Vec<u8>> {
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    read(path, if is_toml { TOML_MAX_BYTES } else { PICTURE_MAX_BYTES })
+    if is_toml { read_toml(path) } else { read(path, PICTURE_MAX_BYTES) }
 }
 
 /// The kind of a file that is not a regular one, in words. Reading a folder fails by itself.

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use bytes::Bytes;
 use frixel_play::GoesOn;
-use frixel_scene::brief;
+use frixel_scene::{FileKind, brief};
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
@@ -46,7 +46,8 @@ fn read(bytes: &Bytes, goes_on: GoesOn<'_>) -> Result<Recording, RecordingError>
     }
     if !bytes.starts_with(MAGIC) {
         let sentence = "it is no Parquet file: give a recording that `frixel play --record` has written";
-        return Err(RecordingError::refused(sentence));
+        let wrong = FileKind::Recording.check(bytes).err();
+        return Err(RecordingError::refused(wrong.map_or(sentence.to_owned(), |wrong| wrong.to_string())));
     }
     let (whole, footer) = whole_part(bytes)?;
     let is_cut_off = whole.len() < bytes.len();

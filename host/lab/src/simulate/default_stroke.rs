@@ -213,7 +213,7 @@ mod tests {
                 continue;
             }
             let text = fs::read(&path).unwrap();
-            let (missed, seconds) = missed(&Scene::parse_bytes(&text, "scene.toml", &scenes).unwrap());
+            let (missed, seconds) = missed(&Scene::parse(&text, "scene.toml", &scenes).unwrap());
             assert!(missed.is_empty(), "{}: {missed:?}", path.display());
             assert!(seconds < 10.0, "{}: {seconds} s", path.display());
         }

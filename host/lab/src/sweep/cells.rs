@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{NamedProfile, Profile, Screen, SharedFiles};
+use frixel_scene::{FileKind, NamedProfile, Profile, Screen, SharedFiles};
 use serde::{Deserialize, Serialize};
 
 use super::parameter::with_fields;
@@ -72,11 +72,11 @@ pub struct Sweep {
 
 impl Sweep {
     /// Reads the files of a plan. `scene` reads a scene file with the files that it names, and `text` the file of a
-    /// `screen` or a `touch source`, each by the name that the plan has for it.
+    /// screen or a touch source, each by the name that the plan has for it.
     pub fn new<E>(
         plan: Plan,
         scene: impl Fn(&str) -> Result<Source, E>,
-        text: impl Fn(&'static str, &str) -> Result<String, E>,
+        text: impl Fn(FileKind, &str) -> Result<String, E>,
     ) -> Result<Self, E> {
         let scenes: Vec<Source> = plan.scenes.iter().map(|name| scene(name)).collect::<Result<_, _>>()?;
         let index = Index {
@@ -130,7 +130,7 @@ impl Sweep {
 /// The profiles that a plan names. A bundled one needs no file; `text` reads the files of the others.
 fn named<P: Profile, E>(
     names: &[String],
-    text: impl Fn(&'static str, &str) -> Result<String, E>,
+    text: impl Fn(FileKind, &str) -> Result<String, E>,
 ) -> Result<Vec<NamedProfile>, E> {
     let named = |name: &String| {
         let text = if P::bundled(name).is_some() { None } else { Some(text(P::KIND, name)?) };

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{Nearest, brief, check_toml};
+use frixel_scene::{FileKind, Nearest, brief, check_toml};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -172,8 +172,9 @@ fn repeated<T: Debug>(items: &[T]) -> Option<&T> {
 pub struct PlanError(pub(super) String);
 
 impl Plan {
-    /// Reads the text of a plan. Messages call the file `name`.
-    pub fn parse(text: &str, name: &str) -> Result<Self, PlanError> {
+    /// Reads the text or the bytes of a plan. Messages call the file `name`.
+    pub fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, PlanError> {
+        let text = FileKind::Plan.text(text.as_ref(), name).map_err(|error| PlanError(error.to_string()))?;
         let brief_lines = |reason: &str| reason.trim_end().lines().map(brief).collect::<Vec<_>>().join("\n");
         let not_a_plan = |error: toml::de::Error| PlanError(format!("{name}: {}", brief_lines(&error.to_string())));
         check_toml(text).map_err(|mistake| PlanError(format!("{name}: {mistake}")))?;

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use frixel_scene::WrongKind;
 use thiserror::Error;
 
 /// Why a table, or a row of it, cannot be read: what was found, and what to do.
@@ -29,6 +30,12 @@ impl TableError {
     /// The found and the expected contents, for a caller with better advice.
     pub fn found(&self) -> &str {
         &self.found
+    }
+}
+
+impl From<WrongKind> for TableError {
+    fn from(wrong: WrongKind) -> Self {
+        Self::new(wrong.finding(), wrong.advice())
     }
 }
 

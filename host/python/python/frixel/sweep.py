@@ -61,12 +61,9 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
                     "their own fingers: give the scene as it is, and screens in `screens`"
                 )
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
-        return _frixel.sweep_cells(text, "<plan>", "", sources)
+        return _frixel.sweep_cells(text.encode(), "<plan>", "", sources)
     path = checked_path("plan", plan)
-    try:
-        text = read_bytes(path, "this plan", ParameterError, is_toml=True).decode()
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path}: this plan cannot be read ({error}): give a text in UTF-8") from error
+    text = read_bytes(path, "this plan", ParameterError, is_toml=True)
     return _frixel.sweep_cells(text, name_of(path), str(path.parent), {})
 
 

@@ -7,22 +7,23 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use super::{Fields, misplaced};
 use crate::compile_error::CompileError;
+use crate::file_kind::FileKind;
 use crate::log::Log;
 use crate::mistake::FileMistake;
 use crate::source::{Source, SourceFile};
 use crate::toml_text::toml;
 
-/// Reads the text of a file: `read` gets its fields, and messages call the whole text `table` and the file `name`.
+/// Reads a file of a kind: `read` gets its fields, and messages call the file `name`.
 pub(crate) fn read_text<T>(
-    text: &str,
+    kind: FileKind,
+    bytes: &[u8],
     name: &str,
-    table: &str,
     read: impl FnOnce(Fields, &mut Log) -> Option<T>,
 ) -> Result<T, CompileError> {
-    let source = Source::new(name, text);
+    let source = Source::new(name, kind.text(bytes, name)?);
     let mut log = Log::new(&source);
     let fields = source.files().first().and_then(|file| parsed(file, &mut log));
-    let value = fields.and_then(|values| read(Fields::new(table, 0, values), &mut log));
+    let value = fields.and_then(|values| read(Fields::new(format!("this {}", kind.name()), 0, values), &mut log));
     log.finish(value)
 }
 

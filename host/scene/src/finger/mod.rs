@@ -12,6 +12,7 @@ use frixel_layers::{FingerLaw, LawPoint};
 
 use super::compile_error::CompileError;
 use super::fields::read_text;
+use super::file_kind::FileKind;
 use super::profile::Profile;
 
 pub(super) use read::read;
@@ -222,7 +223,7 @@ impl FingerProfile {
 }
 
 impl Profile for FingerProfile {
-    const KIND: &'static str = "finger";
+    const KIND: FileKind = FileKind::Finger;
 
     fn bundled_names() -> Vec<&'static str> {
         bundled::TEXTS.iter().map(|(name, _)| *name).collect()
@@ -233,7 +234,7 @@ impl Profile for FingerProfile {
         Self::parse(text, name).ok()
     }
 
-    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this finger profile", read)
+    fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, CompileError> {
+        read_text(Self::KIND, text.as_ref(), name, read)
     }
 }

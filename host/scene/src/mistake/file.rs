@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::{SLASH_ADVICE, TILDE_ADVICE};
 use crate::file::VERSION;
+use crate::file_kind::WrongKind;
 use crate::files::{FileUnavailable, file_name};
 use crate::nearest::Nearest;
 use crate::printable::{Shown, brief};
@@ -14,6 +15,9 @@ pub(crate) enum FileMistake {
     /// The bytes are not UTF-8.
     #[error("this byte is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
+    /// The file is of another kind.
+    #[error(transparent)]
+    WrongKind(#[from] WrongKind),
     /// The text is not TOML.
     #[error("this is not TOML: {0}")]
     Syntax(String),

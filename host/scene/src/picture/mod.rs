@@ -8,6 +8,8 @@ mod tests;
 
 use thiserror::Error;
 
+use super::file_kind::{FileKind, WrongKind};
+
 /// Largest number of pixels in a picture, and in all pictures of a scene: 64 million, whose grey values take at most
 /// 256 MiB.
 pub(super) const PIXELS_MAX: usize = SQUARE_MAX * SQUARE_MAX;
@@ -50,6 +52,8 @@ pub(crate) enum Ground {
 pub(super) enum PictureError {
     #[error("it is neither a PNG nor a JPEG file: save it as PNG")]
     UnknownFormat,
+    #[error(transparent)]
+    WrongKind(#[from] WrongKind),
     #[error("it is damaged ({0}): save it again")]
     Damaged(String),
     #[error("its colours are inks (CMYK): save it as RGB or grey")]
@@ -72,13 +76,8 @@ pub fn check_picture(bytes: &[u8]) -> Result<(usize, usize), String> {
     Picture::decode(bytes, PIXELS_MAX).map(|picture| (picture.width, picture.height)).map_err(|error| error.to_string())
 }
 
-/// The sentence about a picture that was given as a scene `file`.
-pub fn picture_sentence(file: &str) -> String {
-    format!("{file}: this is a picture, not a scene file; make a scene of it: frixel new NAME --picture {file}")
-}
-
 /// Whether bytes begin as a PNG or JPEG file does.
-pub fn is_picture(bytes: &[u8]) -> bool {
+pub(crate) fn is_picture(bytes: &[u8]) -> bool {
     bytes.starts_with(from_png::SIGNATURE) || bytes.starts_with(from_jpeg::SIGNATURE)
 }
 
@@ -90,6 +89,7 @@ impl Picture {
         } else if bytes.starts_with(from_jpeg::SIGNATURE) {
             from_jpeg::decode(bytes, pixels_max)
         } else {
+            FileKind::Picture.check(bytes)?;
             Err(PictureError::UnknownFormat)
         }
     }

@@ -10,6 +10,7 @@ use frixel_wire::fault::{Fault, State};
 
 use crate::compile_error::CompileError;
 use crate::fields::read_text;
+use crate::file_kind::FileKind;
 
 /// A scenario file (`docs/inside/scenarios.md`). A host connects and plays the scene; times count from the start of the
 /// play.
@@ -50,8 +51,8 @@ impl Scenario {
     /// assert_eq!((scenario.commands.len(), scenario.expectations.len()), (1, 1));
     /// # Ok::<(), frixel_scene::CompileError>(())
     /// ```
-    pub fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this scenario", |fields, log| read::scenario(fields, name, log))
+    pub fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, CompileError> {
+        read_text(FileKind::Scenario, text.as_ref(), name, |fields, log| read::scenario(fields, name, log))
     }
 
     /// The files of all scenes that the scenario plays.

@@ -8,6 +8,7 @@ mod tests;
 
 use super::compile_error::CompileError;
 use super::fields::read_text;
+use super::file_kind::FileKind;
 use super::profile::Profile;
 
 pub(super) use read::{EFFECTIVE_GAP_MAX_UM, read};
@@ -80,7 +81,7 @@ impl Screen {
 }
 
 impl Profile for Screen {
-    const KIND: &'static str = "screen";
+    const KIND: FileKind = FileKind::Screen;
 
     fn bundled_names() -> Vec<&'static str> {
         vec!["example"]
@@ -90,7 +91,7 @@ impl Profile for Screen {
         (name == "example").then(Self::example)
     }
 
-    fn parse(text: &str, name: &str) -> Result<Self, CompileError> {
-        read_text(text, name, "this screen", read)
+    fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, CompileError> {
+        read_text(Self::KIND, text.as_ref(), name, read)
     }
 }

@@ -35,7 +35,7 @@ impl Inputs {
     }
 
     fn scene(&self) -> Result<Scene, CompileError> {
-        let scene = Scene::parse_bytes(&self.text, &self.name, &self.files);
+        let scene = Scene::parse(&self.text, &self.name, &self.files);
         if let Ok(text) = str::from_utf8(&self.text) {
             schema::check_agrees(text, mistakes(&scene));
         }
@@ -79,7 +79,7 @@ variants!(field_name, FIELD_MISTAKES, FieldMistake: UnknownField Misplaced Missi
     BundledFinger WrongType QuotedNumber NotATable NotTables OutOfRange TooLong UnknownChoice NoDefault NoDesign
     LowAboveHigh TwoUnits NotWhole IntervalReversed Law Date EmptyText
     Unprintable NameTooLong Count SpeedsDoNotRise DriftsTooFast ButtonPolygon RepeatInPlace AddedTotal NeedsLive);
-variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 Syntax Version
+variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 WrongKind Syntax Version
     UnknownProfile IncludedByItself TooMuch TooManyFiles IncludedTwice IncludedMissing
     IncludedUnusable TableTwice NameTwice FileMissing NoFileName FileUnusable);
 variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
