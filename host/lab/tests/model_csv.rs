@@ -1,6 +1,6 @@
 //! Rows of CSV through the contact model, and back.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::{self, Read, Write};
 
 use frixel_lab::model_csv::{self, CsvError, Precision, Summary};
@@ -20,10 +20,11 @@ const GOOD: [&str; 7] = [
     "soft-loaded,8e-3,,1e-5,1,0.5,150,0.5,,1e5,0.5,4.5",
 ];
 
-/// Rows of a CSV text by column; of columns of one name, the last.
+/// Rows of a CSV text by column, of which no two have the same name.
 fn rows(text: &str) -> Vec<HashMap<String, String>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().unwrap().clone();
+    assert_eq!(header.iter().collect::<HashSet<_>>().len(), header.len(), "{header:?}");
     let owned = |record: csv::StringRecord| {
         header.iter().zip(record.iter()).map(|(name, cell)| (name.to_owned(), cell.to_owned())).collect()
     };
@@ -195,10 +196,6 @@ fn reasons_say_what_was_expected_and_found_and_where() {
             "invalid: normal_force_n must be finite and not below zero, but is -5e-1",
         ),
         (
-            changed(GOOD[3], "outer_radius_m", "1e-3"),
-            "invalid: the contact would pass the outer radius; lower load or voltage",
-        ),
-        (
             changed(GOOD[0], "voltage_v", "1e300"),
             "invalid: voltage_v of 1e300 leads to numbers too large or too small for this precision",
         ),
@@ -272,6 +269,23 @@ fn no_voltage_and_no_load_are_zeros_and_a_pull_without_voltage_is_no_contact() {
         (row["status"].as_str(), row["contact_radius_m"].as_str(), row["friction_n"].as_str()),
         ("no-contact", "0", "0")
     );
+}
+
+#[test]
+fn a_contact_wider_than_the_finger_has_a_status_of_its_own() {
+    let wide = changed(GOOD[0], "voltage_v", "1e5");
+    let outside = changed(GOOD[3], "outer_radius_m", "1e-3");
+    let (evaluated, summary) = text(eval, Precision::F64, &format!("{HEADER}\n{wide}\n{outside}\n{}\n", GOOD[0]));
+    assert_eq!((summary.invalid_rows, summary.beyond_finger_rows), (0, 2));
+    let found = rows(&evaluated);
+    let statuses: Vec<&str> = found.iter().map(|row| row["status"].as_str()).collect();
+    assert_eq!(statuses, ["wider-than-finger", "wider-than-finger", "ok"]);
+    assert!(found[0]["contact_radius_m"].parse::<f64>().unwrap() > 8e-3);
+    assert_eq!(found[1]["friction_n"], "");
+    let again = evaluated.lines().filter(|line| !line.starts_with("wf-finite")).collect::<Vec<_>>().join("\n");
+    let (found, summary) = transformed(invert, Precision::F64, &again);
+    assert_eq!((found[0]["status"].as_str(), summary.beyond_finger_rows), ("wider-than-finger", 1));
+    assert_eq!(summary.understood.as_deref(), Some("answers replace its voltage_v, status"));
 }
 
 #[test]

@@ -23,8 +23,8 @@ pub(super) enum ModelCommand {
     /// and `wf-finite` take as well; `wf-finite` needs `outer_radius_m`. What a variant does not need is not read.
     ///
     /// Writes the same columns, and behind them `sigma0_pa`, `contact_radius_m`, `effective_stiffness_pa_per_m`,
-    /// `friction_n` and `status`: `ok`, `no-contact` (pulled off: radius and friction are zero), or `invalid` with the
-    /// reason.
+    /// `friction_n` and `status`: `ok`, `no-contact` (pulled off: radius and friction are zero), `wider-than-finger`
+    /// (the model is not valid), or `invalid` with the reason. These replace columns of the same names.
     Eval(FileArgs),
     /// Friction to voltage, row by row.
     ///
@@ -32,7 +32,8 @@ pub(super) enum ModelCommand {
     /// where the total would cancel) in place of `voltage_v`: the one that a row fills in.
     ///
     /// Writes the same columns, and behind them `voltage_v` (rms) and `status`: `ok`, `below-natural` (less than the
-    /// finger has at no voltage), `unstable` (a contact below pull-off), or `invalid` with the reason.
+    /// finger has at no voltage), `unstable` (a contact below pull-off), `wider-than-finger` (the model is not valid),
+    /// or `invalid` with the reason. These replace columns of the same names.
     Invert(FileArgs),
 }
 

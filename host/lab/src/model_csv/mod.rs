@@ -18,18 +18,19 @@
 //! voltage adds; exact where the difference of totals would cancel). A row with both is invalid. An optional
 //! `normal_force_n` defaults to zero. Cells that a variant does not need are ignored.
 //!
-//! The output has the input's columns, unchanged, followed by
+//! The output has the input's columns, followed by
 //!
 //! - [`eval`]: `sigma0_pa, contact_radius_m, effective_stiffness_pa_per_m, friction_n, status`,
 //! - [`invert`]: `voltage_v, status`.
 //!
-//! If the input already has a column of such a name, the output has two; the last one is the answer. Numbers have 17
-//! significant digits, or 9 in `f32`, so that they can be read back exactly. The output has the separators and the
-//! decimal sign of the input; answers are in the units of their names, whatever the input has.
+//! These replace columns of the same names in the input, so that the output of one direction is an input of the other.
+//! Numbers have 17 significant digits, or 9 in `f32`, so that they can be read back exactly. The output has the
+//! separators and the decimal sign of the input; answers are in the units of their names, whatever the input has.
 //!
 //! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (the friction is less than at zero
-//! voltage, possibly negative), `unstable`, or `invalid: REASON` with empty cells. An invalid row does not stop the
-//! others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
+//! voltage, possibly negative), `unstable`, `wider-than-finger` or `invalid: REASON` with empty cells. At
+//! `wider-than-finger`, the contact's radius exceeds the finger's radius of curvature, where the model is not valid; the
+//! cells are empty if it passes the outer radius. An invalid row does not stop the others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
 //! repeats a column that the model reads. A missing column that only some variants need makes the rows of those
 //! variants invalid.
 
@@ -61,12 +62,15 @@ pub struct Summary {
     pub rows: u64,
     /// Number of rows whose status is `invalid`.
     pub invalid_rows: u64,
-    /// Number of rows whose contact radius exceeds the finger's radius of curvature, where the paraboloid no longer
-    /// approximates it.
+    /// Number of rows whose status is `wider-than-finger`.
     pub beyond_finger_rows: u64,
-    /// Description of the input's format, as from [`Table::understood`].
+    /// Description of the input's format, as from [`Table::understood`], and of its columns that answers replace.
     pub understood: Option<String>,
 }
+
+/// Status of a contact whose radius exceeds the finger's, where the paraboloid no longer approximates it.
+const WIDER_THAN_FINGER: &str = "wider-than-finger";
+const STATUS: &str = "status";
 
 /// Warning about contacts whose radius exceeds the finger's; `None` without any.
 pub fn wider_than_finger(contacts: u64) -> Option<String> {
@@ -132,7 +136,6 @@ struct Answer {
     /// One cell for each of the direction's answers.
     cells: Vec<String>,
     status: &'static str,
-    beyond_finger: bool,
 }
 
 fn transform(
@@ -145,15 +148,21 @@ fn transform(
     let dialect = table.dialect();
     let mut writer = WriterBuilder::new().delimiter(dialect.separator()).from_writer(output);
     let columns = Columns::new(&mut table, direction.given)?;
+    let is_answer = |name: &String| direction.answers.iter().chain([&STATUS]).any(|answer| answer == name);
+    let is_kept: Vec<bool> = table.names().iter().map(|name| !is_answer(name)).collect();
+    let replaced: Vec<&str> = table.names().iter().filter(|name| is_answer(name)).map(String::as_str).collect();
+    let replaced = (!replaced.is_empty()).then(|| format!("answers replace its {}", replaced.join(", ")));
+    let understood: Vec<String> = table.understood().into_iter().chain(replaced).collect();
+    let understood = (!understood.is_empty()).then(|| understood.join("; "));
     let names = direction.answers.iter().map(|name| name.as_bytes());
-    write(&mut writer, table.header()?.iter().chain(names).chain([b"status".as_slice()]))?;
+    write(&mut writer, kept(table.header()?.iter(), &is_kept).chain(names).chain([STATUS.as_bytes()]))?;
 
-    let mut summary = Summary { understood: table.understood(), ..Summary::default() };
+    let mut summary = Summary { understood, ..Summary::default() };
     while let Some(row) = table.next_row()? {
         summary.rows += 1;
         let (cells, status) = match answer(&Row { cells: row, columns: &columns }) {
             Ok(answer) => {
-                summary.beyond_finger_rows += u64::from(answer.beyond_finger);
+                summary.beyond_finger_rows += u64::from(answer.status == WIDER_THAN_FINGER);
                 (answer.cells.into_iter().map(|cell| dialect.number(cell)).collect(), answer.status.to_owned())
             }
             Err(Refusal(reason)) => {
@@ -162,10 +171,18 @@ fn transform(
             }
         };
         // A row of the wrong length is invalid, and is padded or cut so that its status is in the status column.
-        write(&mut writer, row.cells().chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]))?;
+        write(
+            &mut writer,
+            kept(row.cells(), &is_kept).chain(cells.iter().map(String::as_bytes)).chain([status.as_bytes()]),
+        )?;
     }
     writer.flush().map_err(CsvError::Write)?;
     Ok(summary)
+}
+
+/// The cells of the columns that no answer replaces.
+fn kept<'a>(cells: impl Iterator<Item = &'a [u8]>, is_kept: &[bool]) -> impl Iterator<Item = &'a [u8]> {
+    cells.zip(is_kept).filter_map(|(cell, is_kept)| is_kept.then_some(cell))
 }
 
 fn write<'a>(writer: &mut csv::Writer<impl Write>, cells: impl Iterator<Item = &'a [u8]>) -> Result<(), CsvError> {
@@ -177,12 +194,15 @@ fn evaluated<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let voltage_v_rms = row.real(VOLTAGE)?;
     let sigma0_pa = contact_attraction_pa(voltage_v_rms, model.gap_m)?;
     let (contact_radius_m, stiffness_pa_per_m, friction_n, status) = match model.contact.state(voltage_v_rms) {
-        Ok(state) => (state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, "ok"),
+        Ok(state) => (state.contact_radius_m, state.stiffness_pa_per_m, state.friction_n, model.status_of(&state)),
         Err(StateError::NoContact) => (T::ZERO, model.stiffness_pa_per_m, T::ZERO, "no-contact"),
+        Err(StateError::PassesOuterRadius) => {
+            return Ok(Answer { cells: vec![String::new(); 4], status: WIDER_THAN_FINGER });
+        }
         Err(error) => return Err(error.into()),
     };
     let numbers = [sigma0_pa, contact_radius_m, stiffness_pa_per_m, friction_n];
-    Ok(Answer { cells: cells(&numbers)?, status, beyond_finger: contact_radius_m > model.radius_m })
+    Ok(Answer { cells: cells(&numbers)?, status })
 }
 
 fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
@@ -199,12 +219,16 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
         (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),
     };
     let (cells, status) = match voltage_v_rms {
-        Ok(voltage_v_rms) => (cells(&[voltage_v_rms])?, "ok"),
+        Ok(voltage_v_rms) => {
+            let state = model.contact.state(voltage_v_rms);
+            (cells(&[voltage_v_rms])?, state.map_or("ok", |state| model.status_of(&state)))
+        }
         Err(InverseError::BelowNatural) => (vec![String::new()], "below-natural"),
         Err(InverseError::Unstable) => (vec![String::new()], "unstable"),
+        Err(InverseError::PassesOuterRadius) => (vec![String::new()], WIDER_THAN_FINGER),
         Err(error) => return Err(error.into()),
     };
-    Ok(Answer { cells, status, beyond_finger: false })
+    Ok(Answer { cells, status })
 }
 
 /// Formats the numbers; fails if one of them is not finite.

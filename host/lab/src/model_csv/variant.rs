@@ -1,7 +1,8 @@
 //! The variants of the model by name, each built from the cells of a row.
 
-use frixel_model::{Contact, ContactModel, Finger, Slab, SoftContact, SoftFinger, effective_gap_m};
+use frixel_model::{Contact, ContactModel, ContactState, Finger, Slab, SoftContact, SoftFinger, effective_gap_m};
 
+use super::WIDER_THAN_FINGER;
 use super::columns::{
     COATING, FRICTION_COEFFICIENT, MODULUS, NORMAL_FORCE, OUTER_RADIUS, PERMITTIVITY, RADIUS, SHAPE_CONSTANT,
     STIFFNESS, STRESS_EXPONENT, VARIANT,
@@ -24,6 +25,11 @@ pub(super) struct Model<T> {
 }
 
 impl<T: Number> Model<T> {
+    /// The status of a row with this contact.
+    pub(super) fn status_of(&self, state: &ContactState<T>) -> &'static str {
+        if state.contact_radius_m > self.radius_m { WIDER_THAN_FINGER } else { "ok" }
+    }
+
     pub(super) fn read(row: &Row) -> Result<Self, Refusal> {
         row.cells.check_length()?;
         let variant = row.text(VARIANT);
