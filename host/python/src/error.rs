@@ -22,9 +22,18 @@ pub(crate) fn model_error(error: ParameterError) -> PyErr {
 
 /// The exception for the mistakes of a scene, or of a file that it names.
 pub(crate) fn scene_error(py: Python<'_>, error: &CompileError) -> PyErr {
+    scene_exception(py, error.to_string(), error)
+}
+
+/// The same about a subject.
+pub(crate) fn scene_error_of(py: Python<'_>, subject: &str, error: &CompileError) -> PyErr {
+    scene_exception(py, format!("{subject}: {error}"), error)
+}
+
+fn scene_exception(py: Python<'_>, message: String, error: &CompileError) -> PyErr {
     let mistakes = error.diagnostics.iter().map(|diagnostic| mistake(py, diagnostic)).collect::<PyResult<Vec<_>>>();
     match mistakes.and_then(|mistakes| PyList::new(py, mistakes)) {
-        Ok(mistakes) => raised(py, "SceneError", (error.to_string(), mistakes)),
+        Ok(mistakes) => raised(py, "SceneError", (message, mistakes)),
         Err(error) => error,
     }
 }

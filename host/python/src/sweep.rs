@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
 
-use super::error::{parameter_error, raised, scene_error};
+use super::error::{parameter_error, raised, scene_error, scene_error_of};
 use super::scene::NamedFiles;
 use super::signals::interruptible;
 
@@ -46,7 +46,8 @@ pub(crate) fn sweep_cells(
         let sweep = Sweep::new(plan, source, |kind, name| text_in(&folder, kind, name))?;
         for number in sweep.samples().into_iter().take_while(|_| goes_on().is_continue()) {
             let cell = sweep.cell(number)?;
-            cell.check().map_err(|error| Raised(Python::attach(|py| exception(py, &cell, error))))?;
+            cell.check()
+                .map_err(|error| Raised(Python::attach(|py| exception(py, &sweep.blame(&cell, &error), error))))?;
         }
         let numbers = (0..sweep.index().cells()).take_while(|_| goes_on().is_continue());
         numbers.map(|number| Ok(json(&sweep.cell(number)?))).collect()
@@ -95,7 +96,7 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
     let played = interruptible(py, |goes_on| pool.install(|| cell.play(goes_on)))?;
-    played.map(|result| result.to_json()).map_err(|error| exception(py, &cell, error))
+    played.map(|result| result.to_json()).map_err(|error| exception(py, &cell.title(), error))
 }
 
 /// Merges results, without checks for signals. Returns the summary's lines, and the files that `frixel sweep` writes.
@@ -113,9 +114,9 @@ pub(crate) fn study_files(py: Python<'_>, results: Vec<String>) -> PyResult<(Vec
     Ok((summary, files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect()))
 }
 
-fn exception(py: Python<'_>, cell: &Cell, error: CellError) -> PyErr {
+fn exception(py: Python<'_>, subject: &str, error: CellError) -> PyErr {
     match error {
-        CellError::Compile(error) => scene_error(py, &error),
-        error => parameter_error(py, format!("{}: {error}", cell.title())),
+        CellError::Compile(error) => scene_error_of(py, subject, &error),
+        error => parameter_error(py, format!("{subject}: {error}")),
     }
 }

@@ -77,7 +77,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let sweep = gather(plan, folder)?;
     for number in sweep.samples() {
         let cell = sweep.cell(number)?;
-        cell.check().map_err(at(cell.title()))?;
+        cell.check().map_err(|error| at(sweep.blame(&cell, &error))(error))?;
     }
     create_folder(&out.join(CELLS))?;
     OutputFile::new(&out.join(INDEX), "-o", &inputs)?.write_shared(json(sweep.index()).as_bytes())?;
@@ -95,7 +95,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let writer = Mutex::new(writer);
     let play = |number: usize| {
         let cell = sweep.cell(number)?;
-        cell.play(TO_THE_END).map_err(at(cell.title()))
+        cell.play(TO_THE_END).map_err(|error| at(sweep.blame(&cell, &error))(error))
     };
     let numbers = part - 1..sweep.index().cells();
     let bar = ProgressBar::new(numbers.len().div_ceil(parts) as u64);

@@ -10,7 +10,7 @@ use frixel_scene::{CompileError, Diagnostic, NamedProfile, ProfileError, Program
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::parameter::{Value, nearest_field};
+use super::parameter::{Value, has_at, nearest_field};
 use crate::GeneratedStroke;
 use crate::score::{Score, TrialFinger, TrialPlan};
 
@@ -131,7 +131,13 @@ pub enum CellError {
 impl Cell {
     /// Name in messages: its scene, and the values that the plan sets.
     pub fn title(&self) -> String {
-        let values: Vec<String> = self.parameters.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+        self.titled(|_| true)
+    }
+
+    /// The same with the values of these parameters.
+    pub(super) fn titled(&self, has: impl Fn(&str) -> bool) -> String {
+        let values = self.parameters.iter().filter(|(path, _)| has(path));
+        let values: Vec<String> = values.map(|(path, value)| format!("{path} = {value}")).collect();
         let with = if values.is_empty() { String::new() } else { format!(" with {}", values.join(", ")) };
         format!("{}{with}", self.scene)
     }
@@ -162,6 +168,14 @@ impl Cell {
     /// Compiles the cell's scene, without playing it. A mistake in one cell is in those of all people.
     pub fn check(&self) -> Result<(), CellError> {
         self.compiled().map(drop)
+    }
+
+    /// The parameter to blame for an error: the one that stands where the first mistake of the scene is.
+    pub(super) fn blamed(&self, error: &CellError) -> Option<&str> {
+        let (CellError::Compile(source) | CellError::Misspelt { source, .. }) = error else { return None };
+        let mistake = source.diagnostics.first().filter(|mistake| mistake.file == self.scene)?;
+        let is_there = |path: &&String| has_at(&self.text, path, (mistake.line, mistake.column));
+        self.parameters.keys().find(is_there).map(String::as_str)
     }
 
     fn refused(&self, source: CompileError) -> CellError {

@@ -1,13 +1,15 @@
 //! The cells of a plan, each made from its number when it is needed.
 
 use std::collections::BTreeMap;
+use std::mem;
 
 use frixel_hil_sim::TouchConfig;
 use frixel_scene::{FileKind, NamedProfile, Profile, Screen, SharedFiles};
 use serde::{Deserialize, Serialize};
 
 use super::parameter::with_fields;
-use super::{Cell, Plan, PlanError, json};
+use super::plan::Places;
+use super::{Cell, CellError, Plan, PlanError, json};
 use crate::hash::sha256;
 
 /// Digits of a hash that make a key.
@@ -68,16 +70,18 @@ impl Index {
 pub struct Sweep {
     index: Index,
     scenes: Vec<Source>,
+    places: Places,
 }
 
 impl Sweep {
     /// Reads the files of a plan. `scene` reads a scene file with the files that it names, and `text` the file of a
     /// screen or a touch source, each by the name that the plan has for it.
     pub fn new<E>(
-        plan: Plan,
+        mut plan: Plan,
         scene: impl Fn(&str) -> Result<Source, E>,
         text: impl Fn(FileKind, &str) -> Result<String, E>,
     ) -> Result<Self, E> {
+        let places = mem::take(&mut plan.places);
         let scenes: Vec<Source> = plan.scenes.iter().map(|name| scene(name)).collect::<Result<_, _>>()?;
         let index = Index {
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -86,12 +90,20 @@ impl Sweep {
             touch: named::<TouchConfig, E>(&plan.touch, &text)?,
             plan,
         };
-        Ok(Self { index, scenes })
+        Ok(Self { index, scenes, places })
     }
 
     /// The keys of the cells.
     pub fn index(&self) -> &Index {
         &self.index
+    }
+
+    /// The subject of a cell's error: where the plan has the parameter to blame, the scene, and the values.
+    pub fn blame(&self, cell: &Cell, error: &CellError) -> String {
+        match cell.blamed(error) {
+            Some(path) => format!("{}: {}", self.places.of_parameter(path), cell.titled(|other| other == path)),
+            None => cell.title(),
+        }
     }
 
     /// The numbers of a few cells that have each scene, screen and touch source, each value of a list, and both ends of
@@ -111,7 +123,7 @@ impl Sweep {
             key: self.index.key(number),
             version: version.clone(),
             scene: scene.name.clone(),
-            text: with_fields(&scene.text, &scene.name, &place.parameters)?,
+            text: with_fields(&scene.text, &scene.name, &place.parameters, &self.places)?,
             parameters: place.parameters,
             files: scene.files.clone(),
             screen: screens.get(place.screen).cloned(),

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use frixel_scene::{Nearest, brief};
 use serde::{Deserialize, Serialize};
+use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Item, TableLike};
 
 use super::PlanError;
+use super::plan::Places;
 
 /// The name of the tables of layers.
 const LAYER: &str = "layer";
@@ -60,11 +62,17 @@ impl From<&Value> for toml_edit::Value {
 
 /// The text of a scene with fields set, which are added where the scene does not have them. A path is the names of
 /// tables and of the field with dots between them; behind `layer` stands the number of a layer, from 1.
-pub(super) fn with_fields(text: &str, scene: &str, fields: &BTreeMap<String, Value>) -> Result<String, PlanError> {
+pub(super) fn with_fields(
+    text: &str,
+    scene: &str,
+    fields: &BTreeMap<String, Value>,
+    places: &Places,
+) -> Result<String, PlanError> {
     let not_toml = |error: toml_edit::TomlError| format!("{scene} is not TOML: {}", error.to_string().trim_end());
     let mut document: DocumentMut = text.parse().map_err(not_toml).map_err(PlanError)?;
     for (path, value) in fields {
-        set_at(&mut document, path, value).map_err(|misplaced| misplaced.at(path, scene))?;
+        set_at(&mut document, path, value)
+            .map_err(|misplaced| places.refuse_parameter(path, &misplaced.in_scene(scene)))?;
     }
     Ok(document.to_string())
 }
@@ -75,6 +83,30 @@ fn set_at<'p>(document: &mut DocumentMut, path: &'p str, value: &Value) -> Resul
         Some((field, tables)) => set(document.as_table_mut(), tables, field, value),
         None => Err(Misplaced::Part(path)),
     }
+}
+
+/// Whether a scene has the field at a path, or its value, at a line and column.
+pub(super) fn has_at(text: &str, path: &str, (line, column): (usize, usize)) -> bool {
+    let span = || {
+        let root = DeValue::Table(DeTable::parse(text).ok()?.into_inner());
+        path.split('.')
+            .try_fold((0..text.len(), &root), |(_, item), name| match item {
+                DeValue::Table(table) => {
+                    let (key, value) = table.get_key_value(name)?;
+                    Some((key.span().start..value.span().end, value.get_ref()))
+                }
+                DeValue::Array(items) => {
+                    let item = items.get(name.parse::<usize>().ok()?.checked_sub(1)?)?;
+                    Some((item.span(), item.get_ref()))
+                }
+                _ => None,
+            })
+            .map(|(span, _)| span)
+    };
+    let line_start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+    let before = text.get(line_start..).into_iter().flat_map(str::chars).take(column - 1);
+    let offset = line_start + before.map(char::len_utf8).sum::<usize>();
+    span().is_some_and(|span| span.contains(&offset))
 }
 
 /// The field of a scene whose name is nearest to that at a path, in the same table.
@@ -101,8 +133,8 @@ enum Misplaced<'p> {
 }
 
 impl Misplaced<'_> {
-    fn at(self, path: &str, scene: &str) -> PlanError {
-        let reason = match self {
+    fn in_scene(self, scene: &str) -> String {
+        match self {
             Self::Part(part) => format!(
                 "\"{}\" is no place for a value in {scene}; a path is that of one field, such as \
                  \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
@@ -116,8 +148,7 @@ impl Misplaced<'_> {
                 };
                 format!("{scene} has no layer {}, but {layers}", brief(found))
             }
-        };
-        PlanError(format!("parameter \"{}\": {reason}", brief(path)))
+        }
     }
 }
 
@@ -167,7 +198,7 @@ mod tests {
 
     fn set(path: &str, value: &Value) -> Result<String, String> {
         let fields = BTreeMap::from([(path.to_owned(), value.clone())]);
-        with_fields(SCENE, "a.toml", &fields).map_err(|error| error.to_string())
+        with_fields(SCENE, "a.toml", &fields, &Places::default()).map_err(|error| error.to_string())
     }
 
     #[test]

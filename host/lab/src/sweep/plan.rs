@@ -7,6 +7,7 @@ use frixel_hil_sim::TouchConfig;
 use frixel_scene::{FileKind, Nearest, brief, check_toml};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+use toml::de::DeTable;
 
 use super::parameter::Value;
 use crate::GeneratedStroke;
@@ -64,6 +65,9 @@ pub struct Plan {
     /// Values of fields of the scenes, by the path of the field: `drive.voltage_max_v_rms`, `layer.2.high_n`.
     #[serde(default)]
     pub parameters: BTreeMap<String, Values>,
+    /// Where the fields stand in the file.
+    #[serde(skip)]
+    pub(super) places: Places,
 }
 
 /// Required fields of a plan.
@@ -78,18 +82,18 @@ fn fields() -> impl Iterator<Item = &'static str> {
 }
 
 /// Refuses a plan with an unknown field, without a needed one, or with values that are neither a list nor a range.
-fn check_names(plan: &toml::Table, name: &str) -> Result<(), PlanError> {
+fn check_names(plan: &toml::Table, places: &Places) -> Result<(), PlanError> {
     if let Some(unknown) = plan.keys().find(|key| !fields().any(|field| field == key.as_str())) {
-        let nearest = Nearest::new(unknown, fields());
-        return Err(PlanError(format!("{name}: the plan has no field `{}`: {nearest}", brief(unknown))));
+        let (place, nearest) = (places.of_field(unknown), Nearest::new(unknown, fields()));
+        return Err(PlanError(format!("{place}: the plan has no field `{}`: {nearest}", brief(unknown))));
     }
     if let Some(needed) = REQUIRED.iter().find(|field| !plan.contains_key(**field)) {
-        return Err(PlanError(format!("{name}: the plan lacks `{needed}`")));
+        return Err(PlanError(format!("{}: the plan lacks `{needed}`", places.file)));
     }
     let parameters = plan.get("parameters").and_then(toml::Value::as_table);
     for (path, values) in parameters.into_iter().flatten() {
         if let Err(error) = Values::deserialize(values.clone()) {
-            return Err(PlanError(format!("{name}: parameter \"{}\": {}", brief(path), error.message())));
+            return Err(places.refuse_parameter(path, error.message()));
         }
     }
     Ok(())
@@ -166,6 +170,54 @@ fn repeated<T: Debug>(items: &[T]) -> Option<&T> {
     items.iter().find(|item| !seen.insert(format!("{item:?}")))
 }
 
+/// Where the fields of a plan stand in its file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Places {
+    file: String,
+    /// Line and column of each field, and of each parameter behind `parameters.`.
+    fields: BTreeMap<String, (usize, usize)>,
+}
+
+impl Places {
+    fn of(text: &str, file: &str) -> Self {
+        let plan = DeTable::parse(text).map(toml::Spanned::into_inner).unwrap_or_default();
+        let mut fields = BTreeMap::new();
+        let mut add = |key: String, offset| _ = fields.insert(key, line_and_column(text, offset));
+        for (field, value) in &plan {
+            add(field.get_ref().to_string(), field.span().start);
+            for (path, _) in value.get_ref().as_table().into_iter().flatten() {
+                add(format!("{}.{}", field.get_ref(), path.get_ref()), path.span().start);
+            }
+        }
+        Self { file: file.to_owned(), fields }
+    }
+
+    /// The place of a field: file, line and column.
+    fn of_field(&self, field: &str) -> String {
+        match self.fields.get(field) {
+            Some((line, column)) => format!("{}:{line}:{column}", self.file),
+            None => self.file.clone(),
+        }
+    }
+
+    /// The place of a parameter.
+    pub(super) fn of_parameter(&self, path: &str) -> String {
+        self.of_field(&format!("parameters.{path}"))
+    }
+
+    /// The error of a parameter.
+    pub(super) fn refuse_parameter(&self, path: &str, reason: &str) -> PlanError {
+        PlanError(format!("{}: parameter \"{}\": {reason}", self.of_parameter(path), brief(path)))
+    }
+}
+
+/// Line and column of a byte offset, both from one. The column counts characters.
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or_default();
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, before.get(line_start..).unwrap_or_default().chars().count() + 1)
+}
+
 /// Why there are no cells, in a sentence that names the file and the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
@@ -175,20 +227,26 @@ impl Plan {
     /// Reads the text or the bytes of a plan. Messages call the file `name`.
     pub fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, PlanError> {
         let text = FileKind::Plan.text(text.as_ref(), name).map_err(|error| PlanError(error.to_string()))?;
-        let brief_lines = |reason: &str| reason.trim_end().lines().map(brief).collect::<Vec<_>>().join("\n");
-        let not_a_plan = |error: toml::de::Error| PlanError(format!("{name}: {}", brief_lines(&error.to_string())));
+        let refused = |kind: &str, error: &toml::de::Error| {
+            let (line, column) = line_and_column(text, error.span().map_or(0, |span| span.start));
+            PlanError(format!("{name}:{line}:{column}: {kind}{}", brief(error.message())))
+        };
         check_toml(text).map_err(|mistake| PlanError(format!("{name}: {mistake}")))?;
-        let table: toml::Table = toml::from_str(text).map_err(not_a_plan)?;
-        check_names(&table, name)?;
-        let plan: Self = toml::from_str(text).map_err(not_a_plan)?;
-        plan.check(name)?;
+        let table: toml::Table = toml::from_str(text).map_err(|error| refused("this is not TOML: ", &error))?;
+        let places = Places::of(text, name);
+        check_names(&table, &places)?;
+        let plan: Self = toml::from_str(text).map_err(|error| refused("", &error))?;
+        let plan = Self { places, ..plan };
+        plan.check()?;
         Ok(plan)
     }
 
-    fn check(&self, name: &str) -> Result<(), PlanError> {
-        let refuse = |field: &str, found: String, expected: &str| {
-            Err(PlanError(format!("{name}: {} is {}: give {expected}", brief(field), brief(&found))))
+    fn check(&self) -> Result<(), PlanError> {
+        let refuse_at = |place: String, field: &str, found: String, expected: &str| {
+            Err(PlanError(format!("{place}: {} is {}: give {expected}", brief(field), brief(&found))))
         };
+        let refuse =
+            |field: &str, found: String, expected: &str| refuse_at(self.places.of_field(field), field, found, expected);
         if self.scenes.is_empty() {
             return refuse("scenes", "empty".to_owned(), "the name of one scene file or more");
         }
@@ -216,6 +274,9 @@ impl Plan {
                 return refuse(field, found.to_string(), &expected);
             }
         }
+        let refuse = |path: &str, found: String, expected: &str| {
+            refuse_at(self.places.of_parameter(path), path, found, expected)
+        };
         for (path, values) in &self.parameters {
             let parts = path.split('.').count();
             if parts > PATH_PARTS_MAX {
@@ -239,7 +300,8 @@ impl Plan {
         }
         match self.cells() {
             found if found > CELLS_MAX => Err(PlanError(format!(
-                "{name}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it"
+                "{}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it",
+                self.places.file
             ))),
             _ => Ok(()),
         }
