@@ -27,6 +27,7 @@ use crate::host_error::HostError;
 use crate::layer_text;
 use crate::link_stream::LinkStream;
 use crate::map::MAP_HEAD;
+use crate::place;
 use crate::pointer::PointerSample;
 use crate::request::Request;
 use crate::simulator::{FRAME_HEAD, Simulator};
@@ -155,6 +156,12 @@ pub extern "C" fn additions() -> i32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn first_values() -> i32 {
     respond(|| Ok(additions::first_values()))
+}
+
+/// The place of a layer, and the changes that move or resize it: `place.rs` says how.
+#[unsafe(no_mangle)]
+pub extern "C" fn place() -> i32 {
+    respond(|| Ok(place::place(&line())?))
 }
 
 /// Adds a layer to a text, as `additions.rs` says.

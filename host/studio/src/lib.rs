@@ -26,6 +26,7 @@ mod layer_text;
 mod layers;
 mod link_stream;
 mod map;
+mod place;
 mod pointer;
 mod pointer_stream;
 mod program;

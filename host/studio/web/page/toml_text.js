@@ -72,6 +72,17 @@ export class TomlText {
   }
 
   /**
+   * The place of a layer, and the changes that an act makes to it, as host/studio/src/place.rs says it.
+   * @param {number} at
+   * @param {object} about Kind, box, screen and act.
+   */
+  place(at, about) {
+    const hasOwnRegion = this.value(["layer", at, "region"]) !== undefined;
+    const asked = { fields: this.fields(at), hasOwnRegion, at, ...about };
+    return instance.call("place", new TextEncoder().encode(JSON.stringify(asked)));
+  }
+
+  /**
    * Number of the layer that begins in a line, among those of the text, if it is the only one there.
    * @param {number} line From 1.
    */
