@@ -39,8 +39,8 @@ pub(super) fn run(args: &DemoArgs) -> Result<()> {
     if create(&scene, SCENE.as_bytes())? {
         print_line(format_args!("{place} is new: a wall of bricks, as a picture of friction"))?;
         print_line(format_args!(
-            "{slides}; on mortar its friction rises by a quarter, assumed: more than two of the smallest steps that a \
-             finger feels"
+            "{slides}; on mortar its friction rises by a quarter, more than two of the smallest steps that a finger \
+             feels (assumed)"
         ))?;
     } else {
         print_line(format_args!("{place} plays as it is in this folder; remove it to get the bundled one back"))?;

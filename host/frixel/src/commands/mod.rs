@@ -29,12 +29,14 @@ mod target;
 mod terminal;
 mod waiting;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use frixel_scene::FileKind;
 
+use crate::input;
 use stroke::StrokeArgs;
 
 const EXIT_CODES: &str = "Exit codes: 0 on success, 1 on failure (the last line on standard error gives the reason), \
@@ -161,12 +163,14 @@ impl Cli {
 }
 
 /// Tips for likely words that are not commands, not even in a group.
-const TIPS: [(&str, &str); 2] = [
+const TIPS: [(&str, &str); 3] = [
+    ("scenario", "write `frixel sim --scenario FILE.toml`"),
     ("scene", "write `frixel check`, `frixel preview` or `frixel schema`"),
     ("threshold", "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python"),
 ];
 
-/// Adds a tip to the error of an unknown command: for `frixel info`, which lacks its group, `frixel board info`.
+/// Adds a tip to the error of an unknown command: for `frixel info`, which lacks its group, `frixel board info`; for a
+/// file, the command that takes it.
 pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
     let cli = Cli::command();
@@ -174,7 +178,8 @@ pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
     let group = cli.get_subcommands().find(has_command);
     let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name())).or_else(|| {
         let tip = TIPS.into_iter().find(|(word, _)| word == found);
-        tip.map(|(_, tip)| tip.to_owned())
+        let kind = || FileKind::of(&input::read_toml(Path::new(found)).ok()?);
+        tip.map(|(_, tip)| tip).or_else(|| Some(kind()?.use_of())).map(str::to_owned)
     });
     if let Some(tip) = tip {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

@@ -57,12 +57,13 @@ impl Score {
         match (below.len(), fingers) {
             (0, _) => all,
             (_, fingers) if fingers > 1 && by_all.is_empty() => {
-                let by = by_count(&below, fingers);
-                if layers.len() == 1 {
-                    format!("not noticed by all {fingers} simulated fingers: {by}")
-                } else {
-                    format!("none of {} layers is noticed by all {fingers} simulated fingers: {by}", layers.len())
-                }
+                let Some(only) = layers.first().filter(|_| layers.len() == 1) else {
+                    let (by, layers) = (by_count(&below, fingers), layers.len());
+                    return format!("none of {layers} layers is noticed by all {fingers} simulated fingers: {by}");
+                };
+                let Verdicts { touched, felt, .. } = only.simulated_fingers;
+                let those = if touched < fingers { " that touched it" } else { "" };
+                format!("{} is noticed by {felt} of {touched} simulated fingers{those}", only.layer)
             }
             (_, 1) => format!("{all}; {}", by_verdict(&below)),
             _ => format!("{all}; noticed by fewer: {}", by_count(&below, fingers)),
