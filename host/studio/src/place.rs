@@ -180,7 +180,7 @@ impl Placed {
     fn copies(&self) -> Vec<[f64; 2]> {
         let repeat = self.fields.get("repeat").and_then(Value::as_object);
         let offsets = |count: &str, axis: usize, steps: [&str; 2]| {
-            let count = repeat.and_then(|repeat| repeat.get(count)?.as_u64()).unwrap_or(1);
+            let count = repeat.and_then(|repeat| repeat.get(count)?.as_f64()).unwrap_or(1.0) as u64;
             let step = repeat.and_then(|repeat| steps.iter().find_map(|step| repeat.get_key_value(*step)));
             let step_mm =
                 step.map_or(0.0, |(field, value)| value.as_f64().unwrap_or_default() * self.unit_mm(field, axis));

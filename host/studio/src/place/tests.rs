@@ -62,7 +62,9 @@ fn compiled(files: &BTreeMap<String, Vec<u8>>, text: &str) -> Value {
 fn written(value: &Value, decimals: usize) -> String {
     match value {
         Value::Number(number) => {
-            let text = format!("{:.decimals$}", number.as_f64().unwrap());
+            // Halves go up.
+            let scale = 10_f64.powi(decimals as i32);
+            let text = format!("{:.decimals$}", (number.as_f64().unwrap() * scale).round() / scale);
             if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
         }
         Value::Array(values) => {
