@@ -281,9 +281,11 @@ impl World {
     /// The load stated by the stroke or the caller, in N.
     fn stated_load_n(&self) -> Option<f64> {
         match self.motion {
-            Motion::Stroke { start_tick } => self.stroke.normal_load_n(self.stroke_s(start_tick)),
+            Motion::Stroke { start_tick } if self.stroke.has_loads() => {
+                self.stroke.normal_load_n(self.stroke_s(start_tick))
+            }
             Motion::Placed { normal_load_n, .. } => normal_load_n,
-            Motion::Lifted => None,
+            Motion::Stroke { .. } | Motion::Lifted => None,
         }
     }
 

@@ -25,7 +25,7 @@ pub(super) struct Sweep {
     /// Length of a stroke along y.
     y_step_m: f64,
     /// Strokes from the top of the screen to its bottom.
-    sweep_strokes: u64,
+    sweep_strokes: u32,
     stroke_s: f64,
     mean_speed_m_per_s: f64,
 }
@@ -49,7 +49,7 @@ impl Sweep {
             top_m: MARGIN * screen_height_m,
             x_step_m: share * width_m,
             y_step_m: share * y_step_m,
-            sweep_strokes: sweep_strokes as u64,
+            sweep_strokes: sweep_strokes as u32,
             stroke_s,
             mean_speed_m_per_s: share * length_m / stroke_s,
         })
@@ -58,14 +58,14 @@ impl Sweep {
     /// Returns the finger at a time from 0 to the duration. At the duration it rests at the start of the next stroke.
     pub(super) fn at(&self, t_s: f64) -> FingerState {
         let done = t_s / self.stroke_s;
-        let stroke = done as u64;
-        let (progress, rate) = minimum_jerk(done - stroke as f64);
+        let stroke = done as u32;
+        let (progress, rate) = minimum_jerk(done - f64::from(stroke));
         let to_the_right = stroke.is_multiple_of(2);
         let step_in_sweep = stroke % self.sweep_strokes;
         let downwards = (stroke / self.sweep_strokes).is_multiple_of(2);
         let along = |forward: bool, progress: f64| if forward { progress } else { 1.0 - progress };
-        let down = step_in_sweep as f64 + progress;
-        let rows_down = if downwards { down } else { self.sweep_strokes as f64 - down };
+        let down = f64::from(step_in_sweep) + progress;
+        let rows_down = if downwards { down } else { f64::from(self.sweep_strokes) - down };
         FingerState {
             x_m: self.left_m + along(to_the_right, progress) * self.x_step_m,
             y_m: self.top_m + rows_down * self.y_step_m,
