@@ -1,6 +1,6 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
-use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
+use frixel_control::{Active, Board, Drive, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::{BitmapPool, Header};
 use frixel_session::{NextScene, Session, voltage_max_v_rms};
@@ -8,7 +8,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardLimits, notice};
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
+use crate::{AmplifierConfig, Felt, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
 /// Capacity of a board's receive buffer beyond the host's credit, for hello requests, which need no credit, and for
 /// noise.
@@ -206,6 +206,12 @@ impl<'a> Rig<'a> {
 
     /// Advances one tick.
     pub fn step(&mut self) -> RigTick<Status> {
+        let (drive, felt) = self.advance();
+        RigTick { tick: self.tick, drive, felt, status: self.status }
+    }
+
+    /// Advances one tick, and returns what [`Self::step`] does not copy from the rig.
+    fn advance(&mut self) -> (Drive, Felt) {
         let arrived = self.to_board.tick();
         let received =
             self.journal.as_ref().map(|_| arrived.iter().copied().take(TICK_BYTES_MAX).collect::<TickBytes>());
@@ -229,7 +235,7 @@ impl<'a> Rig<'a> {
             let tick = self.tick as u32;
             journal.push((TickInput { tick, received, room, touch, sense }, TickOutput { tick, drive, sent }));
         }
-        RigTick { tick: self.tick, drive, felt, status: self.status }
+        (drive, felt)
     }
 
     /// The board's input. The simulated person releases the arm switch and presses it again on request of the board.
@@ -320,8 +326,8 @@ impl BoardRig for Rig<'_> {
         watch: &mut dyn FnMut(&RigTick),
     ) -> Result<(), RigError> {
         while !self.has_received() && self.tick < until_tick {
-            let RigTick { tick, drive, felt, status } = self.step();
-            watch(&RigTick { tick, drive, felt, status: BoardView::Status(status) });
+            let (drive, felt) = self.advance();
+            watch(&RigTick { tick: self.tick, drive, felt, status: BoardView::Status(self.status) });
         }
         self.receive(received);
         Ok(())

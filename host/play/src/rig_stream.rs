@@ -108,25 +108,22 @@ pub fn ticks_spanning(time_s: f64, tick_hz: u32) -> u64 {
 
 impl Record<'_> {
     fn take(&mut self, tick: &RigTick) {
-        let observation = match &tick.status {
-            BoardView::Status(status) => {
-                self.state = Some(status.telemetry.state);
-                Some(Observation::of_tick(tick.tick as u32, &tick.felt, &status.telemetry))
-            }
-            BoardView::Tick(board_tick) => {
-                self.tick_offset = Some((tick.tick as u32).wrapping_sub(*board_tick));
-                None
-            }
-            BoardView::None => None,
-        };
+        let on_rig = tick.tick as u32;
+        match &tick.status {
+            BoardView::Status(status) => self.state = Some(status.telemetry.state),
+            BoardView::Tick(board_tick) => self.tick_offset = Some(on_rig.wrapping_sub(*board_tick)),
+            BoardView::None => {}
+        }
         if !self.is_started {
             return;
         }
-        match observation {
-            Some(observation) => self.recorder.record(&observation),
-            None => {
-                self.held.push_back(Observation::of_world(tick.tick as u32, &tick.felt, tick.drive.dac_code.bits()));
+        if let BoardView::Status(status) = &tick.status {
+            // An observation is large, and a play may have no recorder.
+            if self.recorder.ticks_left() > 0 {
+                self.recorder.record(&Observation::of_tick(on_rig, &tick.felt, &status.telemetry));
             }
+        } else {
+            self.held.push_back(Observation::of_world(on_rig, &tick.felt, tick.drive.dac_code.bits()));
         }
         if let Some(observer) = &mut self.observer {
             observer(tick);
