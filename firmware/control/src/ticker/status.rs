@@ -22,7 +22,7 @@ impl Ticker<'_> {
 
     /// The board's status after the last tick.
     pub fn status(&self) -> Status {
-        let [finger_x_m, finger_y_m] = self.place_m();
+        let ([finger_x_m, finger_y_m], speed_m_per_s) = self.finger_motion();
         Status {
             telemetry: Telemetry {
                 tick: self.tick,
@@ -30,7 +30,7 @@ impl Ticker<'_> {
                 flags: self.flags(),
                 finger_x_m,
                 finger_y_m,
-                speed_m_per_s: self.speed_m_per_s(),
+                speed_m_per_s,
                 commanded_electric_friction_n: self.electric_friction_n,
                 voltage_v_rms: self.envelope.voltage_v_rms(),
                 dac_code: self.dac_code.bits(),
@@ -42,14 +42,12 @@ impl Ticker<'_> {
         }
     }
 
-    /// Position of the finger at the last tick; zero without a finger.
-    fn place_m(&self) -> [f32; 2] {
-        self.finger.track().map_or([0.0; 2], |track| track.place_m(self.elapsed_s(track)))
-    }
-
-    fn speed_m_per_s(&self) -> f32 {
-        let [x, y] = self.finger.track().map_or([0.0; 2], |track| track.velocity_m_per_s(self.elapsed_s(track)));
-        frixel_layers::square_root(x * x + y * y)
+    /// Position of the finger at the last tick, in m, and its speed, in m/s; zero without a finger.
+    fn finger_motion(&self) -> ([f32; 2], f32) {
+        let Some(track) = self.finger.track() else { return ([0.0; 2], 0.0) };
+        let elapsed_s = self.elapsed_s(track);
+        let [x, y] = track.velocity_m_per_s(elapsed_s);
+        (track.place_m(elapsed_s), frixel_layers::square_root(x * x + y * y))
     }
 
     fn flags(&self) -> Flags {
