@@ -214,8 +214,8 @@ impl Field for Samples {
 }
 
 /// Indices of the samples around an interval of positions. A range of twice the number of samples covers every tile.
-fn around(positions: Interval<f64>, samples: usize) -> RangeInclusive<i64> {
+fn around(positions: Interval<f64>, samples: u32) -> RangeInclusive<i64> {
     let first = libm::floor(positions.low).max(-1e6) as i64;
     let last = libm::ceil(positions.high).min(1e6) as i64;
-    first..=last.min(first + 2 * samples as i64)
+    first..=last.min(first + 2 * i64::from(samples))
 }

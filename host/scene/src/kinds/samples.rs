@@ -15,8 +15,8 @@ pub(super) struct Samples {
     pub(super) pitch_y_m: f64,
     angle_turns: f64,
     tiled: bool,
-    pub(super) width: usize,
-    pub(super) height: usize,
+    pub(super) width: u32,
+    pub(super) height: u32,
     along_x: f64,
     along_y: f64,
     black_n: f64,
@@ -35,8 +35,8 @@ impl Samples {
             pitch_y_m: f64::from(record.pitch_y_m),
             angle_turns,
             tiled: record.tiled,
-            width: usize::from(bitmap.width),
-            height: usize::from(bitmap.height),
+            width: bitmap.width.into(),
+            height: bitmap.height.into(),
             along_x: libm::cos(TAU * angle_turns),
             along_y: libm::sin(TAU * angle_turns),
             black_n,
@@ -73,9 +73,9 @@ impl Samples {
         columns: std::ops::RangeInclusive<i64>,
         rows: std::ops::RangeInclusive<i64>,
     ) -> impl Iterator<Item = f64> {
-        let index = |number: i64, count: usize| {
-            let count = count as i64;
-            (if self.tiled { number.rem_euclid(count) } else { number.clamp(0, count - 1) }) as usize
+        let index = |number: i64, count: u32| {
+            let count = i64::from(count);
+            (if self.tiled { number.rem_euclid(count) } else { number.clamp(0, count - 1) }) as u32
         };
         rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).map(move |(column, row)| {
             self.black_n + self.step_n * self.sample(index(column, self.width), index(row, self.height))
@@ -83,20 +83,20 @@ impl Samples {
     }
 
     /// The samples before and after a position, and the fraction of the distance between them.
-    fn between(&self, position: f64, samples: usize) -> (usize, usize, f64) {
+    fn between(&self, position: f64, samples: u32) -> (u32, u32, f64) {
         let last = samples - 1;
         if self.tiled {
-            let place = position.rem_euclid(samples as f64);
-            let before = (place as usize).min(last);
-            return (before, if before == last { 0 } else { before + 1 }, place - before as f64);
+            let place = position.rem_euclid(f64::from(samples));
+            let before = (place as u32).min(last);
+            return (before, if before == last { 0 } else { before + 1 }, place - f64::from(before));
         }
-        let held = position.clamp(0.0, last as f64);
-        let before = held as usize;
-        (before, (before + 1).min(last), held - before as f64)
+        let held = position.clamp(0.0, f64::from(last));
+        let before = held as u32;
+        (before, (before + 1).min(last), held - f64::from(before))
     }
 
-    fn sample(&self, column: usize, row: usize) -> f64 {
-        self.bytes.get(row * self.width + column).map_or(f64::NAN, |sample| f64::from(*sample))
+    fn sample(&self, column: u32, row: u32) -> f64 {
+        self.bytes.get((row * self.width + column) as usize).map_or(f64::NAN, |sample| f64::from(*sample))
     }
 }
 
