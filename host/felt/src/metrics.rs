@@ -171,7 +171,7 @@ impl Metrics {
 struct Spread {
     count: u64,
     max: f64,
-    /// Sum of squares, and the compensation for its rounding (Neumaier's summation; squares never shrink the sum).
+    /// Sum of squares, and the sum of its rounding errors (Knuth's two-sum).
     squares: f64,
     lost: f64,
 }
@@ -179,10 +179,14 @@ struct Spread {
 impl Spread {
     fn add(&mut self, value: f64) {
         self.count += 1;
-        self.max = self.max.max(value.abs());
+        // Not `max`, which takes twice as long because of NaN.
+        if value.abs() > self.max {
+            self.max = value.abs();
+        }
         let square = value * value;
         let sum = self.squares + square;
-        self.lost += if self.squares >= square { (self.squares - sum) + square } else { (square - sum) + self.squares };
+        let added = sum - self.squares;
+        self.lost += (self.squares - (sum - added)) + (square - added);
         self.squares = sum;
     }
 
@@ -223,12 +227,6 @@ impl Ring {
         }
     }
 
-    /// The value `ago` values before the last one.
-    fn ago(&self, ago: usize) -> f64 {
-        let length = self.values.len();
-        self.values[(self.next + length - 1 - ago) % length]
-    }
-
     /// Adds a value, and returns the mean of all values in the ring.
     fn mean_with(&mut self, value: f64) -> f64 {
         self.push(value);
@@ -240,9 +238,14 @@ impl Ring {
     fn ripple_with(&mut self, value: f64) -> Option<f64> {
         self.push(value);
         let period = self.values.len() - 1;
-        let ends = 0.5 * (self.ago(0) + self.ago(period));
-        let mean = (self.sum - ends) / period as f64;
-        (self.filled > period).then(|| self.ago(period / 2) - mean)
+        if self.filled <= period {
+            return None;
+        }
+        // The next place holds the oldest value.
+        let middle = self.next + period - period / 2;
+        let middle = if middle > period { middle - period - 1 } else { middle };
+        let ends = 0.5 * (value + self.values[self.next]);
+        Some(self.values[middle] - (self.sum - ends) / period as f64)
     }
 }
 
