@@ -44,11 +44,21 @@ pub(super) fn encoded(
 /// Averages squares of units into pixels.
 fn reduced(fine: &[u8], width: usize) -> Vec<[u8; 3]> {
     let mut pixels = Vec::with_capacity(fine.len() / (3 * UNITS * UNITS));
+    // Most squares are like the one before.
+    let mut last = None;
     let units = fine.as_chunks::<3>().0;
     for rows in units.chunks_exact(width * UNITS * UNITS) {
         let (upper, lower) = rows.split_at(width * UNITS);
         let squares = upper.as_chunks::<UNITS>().0.iter().zip(lower.as_chunks::<UNITS>().0);
-        pixels.extend(squares.map(|([a, b], [c, d])| average([*a, *b, *c, *d])));
+        pixels.extend(squares.map(|square| match last {
+            Some((before, pixel)) if before == square => pixel,
+            _ => {
+                let ([a, b], [c, d]) = square;
+                let pixel = average([*a, *b, *c, *d]);
+                last = Some((square, pixel));
+                pixel
+            }
+        }));
     }
     pixels
 }
