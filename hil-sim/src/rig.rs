@@ -1,6 +1,6 @@
 //! The in-process rig: session, ticker and world, tick by tick, on one thread.
 
-use frixel_control::{Active, Board, Drive, Order, Sense, Status, StreamBuffer, Ticker};
+use frixel_control::{Active, Board, Order, Sense, Status, StreamBuffer, Ticker};
 use frixel_exchange::{TICK_BYTES_MAX, TickBytes, TickInput, TickOutput};
 use frixel_layers::{BitmapPool, Header};
 use frixel_session::{NextScene, Session, voltage_max_v_rms};
@@ -8,7 +8,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardLimits, notice};
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Felt, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
+use crate::{AmplifierConfig, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
 /// Capacity of a board's receive buffer beyond the host's credit, for hello requests, which need no credit, and for
 /// noise.
@@ -206,12 +206,12 @@ impl<'a> Rig<'a> {
 
     /// Advances one tick.
     pub fn step(&mut self) -> RigTick<Status> {
-        let (drive, felt) = self.advance();
-        RigTick { tick: self.tick, drive, felt, status: self.status }
+        let RigTick { tick, drive, felt, .. } = self.advance();
+        RigTick { tick, drive, felt, status: self.status }
     }
 
-    /// Advances one tick, and returns what [`Self::step`] does not copy from the rig.
-    fn advance(&mut self) -> (Drive, Felt) {
+    /// As [`Self::step`], for a watcher of any rig.
+    fn advance(&mut self) -> RigTick {
         let arrived = self.to_board.tick();
         let received =
             self.journal.as_ref().map(|_| arrived.iter().copied().take(TICK_BYTES_MAX).collect::<TickBytes>());
@@ -228,14 +228,14 @@ impl<'a> Rig<'a> {
         let felt = self.world.apply(drive);
         self.status = self.ticker.status();
         self.session.poll(&self.status);
-        let room = self.room();
-        let sent = self.transmit(room);
+        let (room, mut bytes) = (self.room(), [0; TICK_BYTES_MAX]);
+        let sent = self.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
         self.tick += 1;
         if let (Some(journal), Some(received)) = (&mut self.journal, received) {
-            let tick = self.tick as u32;
+            let (tick, sent) = (self.tick as u32, sent.iter().copied().collect());
             journal.push((TickInput { tick, received, room, touch, sense }, TickOutput { tick, drive, sent }));
         }
-        (drive, felt)
+        RigTick { tick: self.tick, drive, felt, status: BoardView::Status(self.status) }
     }
 
     /// The board's input. The simulated person releases the arm switch and presses it again on request of the board.
@@ -274,13 +274,12 @@ impl<'a> Rig<'a> {
         if self.host_is_away { 0 } else { TICK_BYTES_MAX.saturating_sub(self.to_host.queued()) as u8 }
     }
 
-    /// Moves bytes from the board's transmit queue to the line, as long as there is room, and returns them.
-    fn transmit(&mut self, room: u8) -> TickBytes {
-        let mut bytes = [0; TICK_BYTES_MAX];
-        let count = self.session.transmit(bytes.get_mut(..usize::from(room)).unwrap_or_default());
-        let sent: TickBytes = bytes.into_iter().take(count).collect();
+    /// Moves bytes from the board's transmit queue to the line, as long as `bytes` has room, and returns them.
+    fn transmit<'b>(&mut self, bytes: &'b mut [u8]) -> &'b [u8] {
+        let count = self.session.transmit(bytes);
+        let sent = bytes.get(..count).unwrap_or_default();
         if !sent.is_empty() {
-            self.to_host.send(&sent);
+            self.to_host.send(sent);
         }
         self.at_host.extend_from_slice(self.to_host.tick());
         sent
@@ -326,8 +325,7 @@ impl BoardRig for Rig<'_> {
         watch: &mut dyn FnMut(&RigTick),
     ) -> Result<(), RigError> {
         while !self.has_received() && self.tick < until_tick {
-            let (drive, felt) = self.advance();
-            watch(&RigTick { tick: self.tick, drive, felt, status: BoardView::Status(self.status) });
+            watch(&self.advance());
         }
         self.receive(received);
         Ok(())
