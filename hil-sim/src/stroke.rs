@@ -189,6 +189,11 @@ impl Stroke {
         Ok(Self { round_s: Some(round_s), ..self })
     }
 
+    /// Whether the stroke states normal loads.
+    pub(crate) fn has_loads(&self) -> bool {
+        matches!(&self.path, Path::Rows(rows) if rows.has_loads)
+    }
+
     /// Returns the normal load `t_s` seconds after the start of the stroke, in N; `None` if the stroke does not state
     /// it, or while the finger is off the screen.
     pub fn normal_load_n(&self, t_s: f64) -> Option<f64> {

@@ -24,7 +24,7 @@ pub(super) struct Rows {
     /// searches only one slot.
     before_slot: Vec<usize>,
     slots_per_s: f64,
-    has_loads: bool,
+    pub(super) has_loads: bool,
 }
 
 impl Rows {

@@ -165,7 +165,7 @@ impl<R: Read> Table<R> {
         let names: Vec<String> = header.iter().map(name).collect();
         let asked = vec![false; names.len()];
         let (stated, rows, cells) = (Vec::new(), 0, ByteRecord::new());
-        Ok(Self { reader, dialect, asked, names, units, layout, kind, stated, rows, cells })
+        Ok(Self { reader, dialect, names, units, layout, asked, stated, kind, rows, cells })
     }
 
     /// How the table is written.
