@@ -174,10 +174,10 @@ impl PlayArgs {
 
     /// Effects of the simulated world beyond the contact model.
     fn effects(&self) -> Effects {
-        match (self.ideal, self.skin.contains(&Skin::NoLeakage)) {
-            (true, _) => Effects::None,
-            (false, true) => Effects::AllButLeakage,
-            (false, false) => Effects::All,
+        Effects {
+            is_ideal: self.ideal,
+            has_leakage: !self.skin.contains(&Skin::NoLeakage),
+            follows_mean_square: self.skin.contains(&Skin::MeanSquare),
         }
     }
 }

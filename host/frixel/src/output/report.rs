@@ -25,7 +25,7 @@ pub(crate) struct Report {
     pub board_refuses: Vec<String>,
     /// Whether finger or board is simulated.
     pub simulated: bool,
-    /// The simulated world, `realistic`, `without-leakage` or `ideal`.
+    /// The simulated world, `realistic`, `without-leakage` or `ideal`, each with `-mean-square` if friction follows it.
     pub world: Option<Effects>,
     /// The simulated touch source.
     pub touch_source: Option<TouchSource>,
@@ -121,33 +121,36 @@ pub(crate) struct WorldReport {
 
 /// Effects of the simulated world beyond the contact model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effects {
-    None,
-    /// All but leakage of charge through the skin, on which measurements disagree.
-    AllButLeakage,
-    All,
+pub(crate) struct Effects {
+    /// Whether there are none.
+    pub is_ideal: bool,
+    /// Whether charge leaks through the skin, on which measurements disagree.
+    pub has_leakage: bool,
+    /// Whether friction follows the mean squared voltage of the carrier, which is unmeasured.
+    pub follows_mean_square: bool,
 }
 
 impl Effects {
     /// The name of the world, for programs, and its description.
-    pub(super) const fn description(self) -> (&'static str, &'static str) {
-        match self {
-            Self::None => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
-            Self::AllButLeakage => (
+    pub(super) fn description(self) -> (String, &'static str) {
+        let (name, description) = match (self.is_ideal, self.has_leakage) {
+            (true, _) => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
+            (false, false) => (
                 "without-leakage",
                 "with load changes, noise, pre-sliding, offsets and lost touch reports; --skin no-leakage switches leakage off",
             ),
-            Self::All => (
+            (false, true) => (
                 "realistic",
                 "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off",
             ),
-        }
+        };
+        (format!("{name}{}", if self.follows_mean_square { "-mean-square" } else { "" }), description)
     }
 }
 
 impl Serialize for Effects {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.description().0)
+        serializer.serialize_str(&self.description().0)
     }
 }
 
