@@ -25,6 +25,16 @@ impl State {
     pub const fn number(self) -> u8 {
         self as u8
     }
+
+    /// The state in one word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Disarmed => "disarmed",
+            Self::Armed => "armed",
+            Self::Active => "active",
+            Self::Faulted => "faulted",
+        }
+    }
 }
 
 impl TryFrom<u8> for State {

@@ -10,7 +10,6 @@ use std::time::Duration;
 
 use frixel_lab::recording::Metadata;
 use frixel_scene::{Program, compile};
-use frixel_wire::fault::State;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::{Telemetry, telemetry_period_ticks};
 use numpy::PyReadonlyArray1;
@@ -227,24 +226,14 @@ impl Device {
 fn answer(report: Report) -> Answer {
     let Report { state, now, is_streaming, sentences, telemetry } = report;
     let messages = telemetry.iter().map(message).collect();
-    (state_name(state), now.as_secs_f64(), is_streaming, sentences, messages)
+    (state.word(), now.as_secs_f64(), is_streaming, sentences, messages)
 }
 
 fn message(telemetry: &Telemetry) -> Message {
     let Telemetry { tick, state, flags, finger_x_m, finger_y_m, speed_m_per_s, .. } = *telemetry;
     let Telemetry { commanded_electric_friction_n, voltage_v_rms, .. } = *telemetry;
     let flags = flags.names().collect();
-    let state = state_name(state);
-    (tick, state, flags, finger_x_m, finger_y_m, speed_m_per_s, commanded_electric_friction_n, voltage_v_rms)
-}
-
-fn state_name(state: State) -> &'static str {
-    match state {
-        State::Disarmed => "disarmed",
-        State::Armed => "armed",
-        State::Active => "active",
-        State::Faulted => "faulted",
-    }
+    (tick, state.word(), flags, finger_x_m, finger_y_m, speed_m_per_s, commanded_electric_friction_n, voltage_v_rms)
 }
 
 fn exception(py: Python<'_>, trouble: Trouble) -> PyErr {

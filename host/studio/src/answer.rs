@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use frixel_scene::{Diagnostic, DiagnosticKind, Program};
-use frixel_wire::fault::{Flags, State};
+use frixel_wire::fault::Flags;
 use frixel_wire::hello::Hello;
 use frixel_wire::message::Telemetry;
 use serde_json::{Value, json};
@@ -80,16 +80,6 @@ fn driven_board(hello: &Hello) -> String {
     hello.notice_sentences().fold(sentence, |sentence, notice| sentence + "; note: " + notice)
 }
 
-/// The page's word for a state.
-pub(crate) fn state_word(state: State) -> &'static str {
-    match state {
-        State::Disarmed => "disarmed",
-        State::Armed => "armed",
-        State::Active => "active",
-        State::Faulted => "faulted",
-    }
-}
-
 /// A telemetry message. A board does not know the scene's friction without its own limits, so `referenceN` is the
 /// friction that it commands: the reported electric part with `natural_n`.
 pub(crate) fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
@@ -106,6 +96,7 @@ pub(crate) fn telemetry(telemetry: &Telemetry, natural_n: f64) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use frixel_wire::fault::State;
     use frixel_wire::hello::{BoardKind, BoardLimits, ResetCause, notice};
 
     use super::*;

@@ -317,7 +317,7 @@ pub extern "C" fn host_wait(wait_ms: f64) -> i32 {
         let telemetry = messages.iter().map(|message| answer::telemetry(message, natural_n));
         let telemetry: Vec<Value> = telemetry.collect();
         let (state, fault) = host.state();
-        let (state, fault) = (answer::state_word(state), fault.as_ref().map(Fault::to_string));
+        let (state, fault) = (state.word(), fault.as_ref().map(Fault::to_string));
         Ok(json!({ "state": state, "fault": fault, "telemetry": telemetry }))
     })
 }
@@ -328,7 +328,7 @@ pub extern "C" fn state_words(state: u32, fault: u32) -> i32 {
     respond(|| {
         let state = u8::try_from(state).ok().and_then(|state| State::try_from(state).ok());
         let fault = u8::try_from(fault).ok().and_then(|fault| Fault::try_from(fault).ok());
-        let (state, fault) = (state.map(answer::state_word), fault.as_ref().map(Fault::to_string));
+        let (state, fault) = (state.map(State::word), fault.as_ref().map(Fault::to_string));
         Ok(json!({ "state": state, "fault": fault }))
     })
 }

@@ -9,7 +9,6 @@ use anyhow::Result;
 use frixel_felt::recorder::{FeltRow, FlagNames};
 
 use super::decimals::Decimals;
-use crate::rigs::BoardEvent;
 use frixel_files::FileWriter;
 use frixel_lab::calibration::ForceRow;
 
@@ -46,8 +45,10 @@ pub(crate) type ForcesCsv = CsvFile<ForceRow>;
 /// A row of `events.csv`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EventRow {
-    /// The event and its time.
-    pub event: BoardEvent,
+    /// Time at which the event was observed, s.
+    pub t_s: f64,
+    /// The state that the board entered, `host-silent` or `time-dropped`.
+    pub event: &'static str,
     /// Time at which the board had received the last complete frame from a host, s.
     pub last_frame_t_s: f64,
     /// Time that a virtual board dropped in this event, s.
@@ -126,14 +127,8 @@ impl CsvRow for EventRow {
     const HEADER: &'static str = "t_s,event,last_frame_t_s,dropped_s";
 
     fn write_cells(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let BoardEvent { t_s, kind } = self.event;
-        write!(
-            formatter,
-            "{t_s:.6},{},{:.6},{}",
-            kind.name(),
-            self.last_frame_t_s,
-            Cell { value: self.dropped_s, decimals: 6 }
-        )
+        let Self { t_s, event, last_frame_t_s, dropped_s } = *self;
+        write!(formatter, "{t_s:.6},{event},{last_frame_t_s:.6},{}", Cell { value: dropped_s, decimals: 6 })
     }
 }
 

@@ -7,7 +7,6 @@
 
 #[cfg(unix)]
 mod emulated;
-mod event_log;
 #[cfg(unix)]
 mod pace;
 #[cfg(unix)]
@@ -17,7 +16,6 @@ mod server_log;
 
 #[cfg(unix)]
 pub use emulated::EmulatedRig;
-pub(crate) use event_log::{BoardEvent, EventKind, EventLog};
 #[cfg(unix)]
 pub(crate) use pace::Dropped;
 #[cfg(unix)]

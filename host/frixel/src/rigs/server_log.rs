@@ -6,9 +6,8 @@ use anyhow::Result;
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{Rig, RigTick, Status};
 use frixel_lab::calibration::ForceSensor;
-use frixel_wire::fault::State;
+use frixel_wire::fault::{Flags, State};
 
-use super::{BoardEvent, EventKind, EventLog};
 use crate::output::{EventCsv, EventRow, FeltCsv, ForcesCsv};
 use frixel_files::{Inputs, OutputFile, OutputFolder};
 
@@ -28,7 +27,7 @@ pub(super) struct ServerLog {
     sensor: ForceSensor,
     events_csv: EventCsv,
     recorder: Recorder,
-    events: EventLog,
+    seen: Seen,
     tick_period_s: f64,
     ticks_per_flush: u64,
     frames: u32,
@@ -50,7 +49,7 @@ impl ServerLog {
             sensor: ForceSensor::new(FORCES_HZ, tick_hz),
             events_csv: EventCsv::new(events.create_live()?)?,
             recorder,
-            events: EventLog::new(State::Disarmed),
+            seen: Seen { state: State::Disarmed, is_host_silent: false },
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_per_flush: (FLUSH_PERIOD_S * f64::from(tick_hz)) as u64,
             frames: 0,
@@ -75,19 +74,20 @@ impl ServerLog {
         }
         let status = &record.status;
         let t_s = record.tick as f64 * self.tick_period_s;
-        self.events.observe(t_s, status.telemetry.state, status.telemetry.flags);
-        let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
-        for event in self.events.take_events() {
-            self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: None })?;
+        for event in self.seen.changes(status.telemetry.state, status.telemetry.flags) {
+            self.note(t_s, event, None)?;
         }
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
     }
 
     /// Writes the event that this board dropped time, after `t_s` seconds.
     pub(super) fn note_dropped(&mut self, t_s: f64, dropped_s: f64) -> Result<()> {
+        self.note(t_s, "time-dropped", Some(dropped_s))
+    }
+
+    fn note(&mut self, t_s: f64, event: &'static str, dropped_s: Option<f64>) -> Result<()> {
         let last_frame_t_s = self.last_frame_at_tick as f64 * self.tick_period_s;
-        let event = BoardEvent { t_s, kind: EventKind::TimeDropped };
-        self.events_csv.write(&EventRow { event, last_frame_t_s, dropped_s: Some(dropped_s) })
+        self.events_csv.write(&EventRow { t_s, event, last_frame_t_s, dropped_s })
     }
 
     /// Writes the buffered rows to the files.
@@ -98,9 +98,44 @@ impl ServerLog {
     }
 }
 
+/// What the board last reported.
+struct Seen {
+    state: State,
+    is_host_silent: bool,
+}
+
+impl Seen {
+    /// The events between the last report and this one: the state that the board entered, and `host-silent` if its host
+    /// has sent nothing for the scene's host timeout.
+    fn changes(&mut self, state: State, flags: Flags) -> impl Iterator<Item = &'static str> + use<> {
+        let is_host_silent = flags.contains(Flags::HOST_SILENT);
+        let entered = (state != self.state).then_some(state.word());
+        let silent = (is_host_silent && !self.is_host_silent).then_some("host-silent");
+        *self = Self { state, is_host_silent };
+        entered.into_iter().chain(silent)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_change_is_one_event() {
+        let mut seen = Seen { state: State::Disarmed, is_host_silent: false };
+        let silent = Flags::HOST_SILENT;
+        for (state, flags, expected) in [
+            (State::Disarmed, Flags::default(), &[][..]),
+            (State::Armed, Flags::default(), &["armed"]),
+            (State::Active, Flags::STILL, &["active"]),
+            (State::Active, Flags::default(), &[]),
+            (State::Disarmed, silent, &["disarmed", "host-silent"]),
+            (State::Disarmed, silent, &[]),
+            (State::Armed, Flags::default(), &["armed"]),
+        ] {
+            assert_eq!(seen.changes(state, flags).collect::<Vec<_>>(), expected);
+        }
+    }
 
     #[test]
     fn a_virtual_board_does_not_replace_what_a_finger_did_on_a_board() {
