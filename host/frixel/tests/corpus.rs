@@ -12,15 +12,14 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Output, Stdio};
+use std::process::Output;
 
 use frixel_testkit::corpus::{self, Case};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::processes::{frixel, repository};
+use crate::processes::{repository, run_fed};
 
 /// Replaces the picture of a control character, such as `␛`, with that character.
 fn with_controls(text: &str) -> String {
@@ -53,14 +52,9 @@ fn write_files(case: &Case, folder: &Path) {
 }
 
 fn run_in(case: &Case, line: &str, folder: &Path) -> Output {
-    let mut command = frixel();
-    let words = line.strip_prefix("frixel").unwrap().split_whitespace().map(with_controls);
-    command.args(words).current_dir(folder);
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let words: Vec<String> = line.strip_prefix("frixel").unwrap().split_whitespace().map(with_controls).collect();
     let stdin = case.files.get(STDIN).map_or("", String::as_str);
-    // A command that fails before it reads closes the pipe.
-    let _ = child.stdin.take().unwrap().write_all(stdin.as_bytes());
-    child.wait_with_output().unwrap()
+    run_fed(folder, &words.iter().map(String::as_str).collect::<Vec<_>>(), stdin.as_bytes())
 }
 
 /// Names and contents of the files below a folder, without following links.

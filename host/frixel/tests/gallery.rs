@@ -108,7 +108,7 @@ fn every_scene_says_what_it_feels_like_and_what_is_assumed() {
 }
 
 /// Size and pixels of a picture.
-fn decoded(path: &Path) -> (u32, u32, Vec<u8>) {
+pub(crate) fn decoded(path: &Path) -> (u32, u32, Vec<u8>) {
     let file = File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut decoder = png::Decoder::new(BufReader::new(file));
     decoder.set_transformations(png::Transformations::EXPAND);

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use std::cell::{Cell, RefCell};
-use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -12,6 +11,8 @@ use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_play::RigStream;
 use frixel_scene::{Program, compile};
 use frixel_testkit::Random;
+
+use crate::processes::bundled;
 
 /// Host timeout of the scene here.
 const HOST_TIMEOUT: Duration = Duration::from_millis(100);
@@ -24,8 +25,9 @@ const UPLOADS_KILLED: usize = 6;
 
 /// The brick with this host timeout.
 fn program(config: &RigConfig) -> Program {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/brick.toml");
-    let mut program = compile(&scene_file::load(&path).unwrap(), &config.board.limits, config.board.tick_hz).unwrap();
+    let mut program =
+        compile(&scene_file::load(&bundled("brick.toml")).unwrap(), &config.board.limits, config.board.tick_hz)
+            .unwrap();
     program.header.host_timeout_s = HOST_TIMEOUT.as_secs_f32();
     program
 }

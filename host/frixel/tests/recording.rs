@@ -11,7 +11,8 @@ use frixel_lab::recording::{Recording, SourceFile, Values};
 use frixel_play::TO_THE_END;
 use tempfile::TempDir;
 
-use crate::processes::{frixel, repository, run, succeed};
+use crate::processes::{bundled, frixel, run, run_fed, said, succeed};
+use crate::stream::{tones, write_wav};
 
 /// A scene with a picture, a finger and a part of its own.
 const SCENE: &str = "version = 1\ninclude = [\"parts/part.toml\"]\n[[layer]]\nname = \"wall\"\nkind = \"bitmap\"\n\
@@ -26,7 +27,7 @@ fn folder() -> TempDir {
     fs::create_dir(path("parts")).unwrap();
     fs::write(path("scene.toml"), SCENE).unwrap();
     fs::write(path("parts/part.toml"), PART).unwrap();
-    fs::copy(repository().join("scenes/textures/brick.png"), path("brick.png")).unwrap();
+    fs::copy(bundled("textures/brick.png"), path("brick.png")).unwrap();
     fs::write(path("stroke.csv"), "t_s,x_mm,y_mm,force_n\n0,10,20,0.4\n0.3,60,25,0.6\n0.7,30.1,40,0.5\n").unwrap();
     fs::write(path("touch.toml"), "reports_per_s = 120\nlatency_ms = 8\nlost_share = 0.05\n").unwrap();
     folder
@@ -116,14 +117,8 @@ fn a_recording_has_the_rows_of_felt_csv_and_what_made_them() {
 
 /// Runs a line with something on its standard input.
 fn fed(folder: &Path, line: &str, input: &[u8]) {
-    let mut command = frixel();
-    command.args(line.split(' ')).current_dir(folder);
-    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-    let mut process = command.spawn().unwrap();
-    // A play that ends before its input closes the pipe.
-    let _ = process.stdin.take().unwrap().write_all(input);
-    let ended = process.wait_with_output().unwrap();
-    assert!(ended.status.success(), "{line}: {}", String::from_utf8_lossy(&ended.stderr));
+    let ended = run_fed(folder, &line.split(' ').collect::<Vec<_>>(), input);
+    assert!(ended.status.success(), "{line}: {}", said(&ended));
 }
 
 #[test]
@@ -258,13 +253,7 @@ fn what_is_streamed_is_in_the_recording_and_streamed_again() {
 fn a_wav_file_is_in_the_recording_and_streamed_again() {
     let folder = folder();
     fs::write(folder.path().join("stream.toml"), STREAMED).unwrap();
-    let spec =
-        hound::WavSpec { channels: 1, sample_rate: 8000, bits_per_sample: 16, sample_format: hound::SampleFormat::Int };
-    let mut wav = hound::WavWriter::create(folder.path().join("a.wav"), spec).unwrap();
-    for pair in samples(4_000).chunks_exact(2) {
-        wav.write_sample(i16::from_le_bytes([pair[0], pair[1]])).unwrap();
-    }
-    wav.finalize().unwrap();
+    write_wav(&folder.path().join("a.wav"), &tones());
     for (what, input) in [
         ("", ""),
         ("--seconds 0.2", ""),

@@ -4,8 +4,9 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::OnceLock;
+
+use crate::processes::run;
 
 /// Counts of the shape that `cargo xtask bench` writes.
 const BENCH: &str = r#"{ "date": "2026-11-26", "m4f.inverse_table": 16, "m4f.inverse_table_cycles": 27,
@@ -16,10 +17,6 @@ const HEAD: &str = "version = 1\n";
 
 type Row = HashMap<String, String>;
 type Files = BTreeMap<String, String>;
-
-fn frixel(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_frixel")).arg("report").args(args).output().unwrap()
-}
 
 /// A report of the bundled scene that is made once for all tests, with counts.
 fn report() -> &'static Files {
@@ -34,7 +31,7 @@ fn report() -> &'static Files {
 
 /// The files of a report, each of which the command names.
 fn made(out: &Path, args: &[&str]) -> Files {
-    let run = frixel(&[&["--out", &out.display().to_string()], args].concat());
+    let run = run(Path::new("."), &[&["report", "--out", &out.display().to_string()], args].concat());
     assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
     let named = String::from_utf8(run.stdout).unwrap();
     let paths = named.lines().map(|line| Path::new(line.trim_start().strip_prefix("wrote").unwrap().trim()));
@@ -251,5 +248,5 @@ fn a_hard_a_soft_and_an_empirical_finger_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let scene_file = folder.path().join("scene.toml").display().to_string();
     fs::write(&scene_file, scene).unwrap();
-    assert!(!frixel(&[&scene_file, "--out", &scene_file]).status.success());
+    assert!(!run(folder.path(), &["report", &scene_file, "--out", &scene_file]).status.success());
 }

@@ -1,26 +1,22 @@
 //! `frixel score`: its files, its people and the row of a page.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
-use crate::processes::{repository, succeed};
+use crate::processes::{bundled, repository, succeed};
 
-fn scene() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/grating.toml")
-}
-
-/// The output of a score of a scene, with its files in a folder.
-fn score(out: &Path, scene: &Path, options: &[&str]) -> String {
-    succeed(out, &[&["score", scene.to_str().unwrap(), "--out", "."], options].concat())
+/// The output of a score of the grating, with its files in a folder.
+fn score(out: &Path, options: &[&str]) -> String {
+    succeed(out, &[&["score", bundled("grating.toml").to_str().unwrap(), "--out", "."], options].concat())
 }
 
 #[test]
 fn the_command_writes_a_row_for_each_play_and_a_picture() {
     let out = tempfile::tempdir().unwrap();
     let options = ["--strokes", "2", "--seeds", "2", "--seconds", "0.5", "--json"];
-    let json: Value = serde_json::from_str(&score(out.path(), &scene(), &options)).unwrap();
+    let json: Value = serde_json::from_str(&score(out.path(), &options)).unwrap();
     assert_eq!(json["plays"].as_array().unwrap().len(), 4);
     let csv = std::fs::read_to_string(out.path().join("score.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
@@ -42,7 +38,7 @@ fn the_command_writes_a_row_for_each_play_and_a_picture() {
 fn people_differ_and_come_again() {
     let out = tempfile::tempdir().unwrap();
     let options = ["--people", "3", "--strokes", "1", "--seeds", "2", "--seconds", "2", "--json"];
-    let plays = || serde_json::from_str::<Value>(&score(out.path(), &scene(), &options)).unwrap();
+    let plays = || serde_json::from_str::<Value>(&score(out.path(), &options)).unwrap();
     let json = plays();
     let people: Vec<u64> =
         json["plays"].as_array().unwrap().iter().filter_map(|play| play["simulated_person"].as_u64()).collect();
@@ -81,7 +77,7 @@ fn every_number_of_jobs_has_the_same_bytes() {
     let scored = |jobs: &str| {
         let out = tempfile::tempdir().unwrap();
         let options = ["--people", "5", "--strokes", "2", "--seeds", "1", "--seconds", "0.4", "--json", "--jobs", jobs];
-        let said = score(out.path(), &scene(), &options);
+        let said = score(out.path(), &options);
         let file = |name: &str| std::fs::read(out.path().join(name)).unwrap();
         (said, ["score.csv", "score-layers.csv", "score.svg"].map(file))
     };

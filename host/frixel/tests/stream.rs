@@ -20,6 +20,8 @@ use frixel_scene::{Program, compile};
 use frixel_wire::fault::Flags;
 use hound::{SampleFormat, WavSpec, WavWriter};
 
+use crate::processes::bundled;
+
 const SAMPLE_HZ: u32 = 4_000;
 const TICK_HZ: f64 = 40_000.0;
 const FADE_TICKS: f64 = 400.0;
@@ -30,7 +32,7 @@ const HIGH_N: f64 = 0.018;
 /// The friction that a stream alone gives.
 fn program() -> Program {
     let rig = RigConfig::default();
-    let scene = scene_file::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/constant.toml")).unwrap();
+    let scene = scene_file::load(&bundled("constant.toml")).unwrap();
     let mut program = compile(&scene, &rig.board.limits, rig.board.tick_hz).unwrap();
     let layer = Layer::Stream(Stream { low_n: LOW_N as f32, high_n: HIGH_N as f32 });
     program.records = vec![Record { region: Region::Screen, blend: Blend::Replace, gain: 1.0, layer }];
@@ -38,7 +40,7 @@ fn program() -> Program {
 }
 
 /// A second of two tones, as a 16-bit WAV has it.
-fn tones() -> Vec<i16> {
+pub(crate) fn tones() -> Vec<i16> {
     (0..SAMPLE_HZ)
         .map(|index| {
             let t_s = f64::from(index) / f64::from(SAMPLE_HZ);
@@ -48,7 +50,7 @@ fn tones() -> Vec<i16> {
         .collect()
 }
 
-fn write_wav(path: &Path, samples: &[i16]) {
+pub(crate) fn write_wav(path: &Path, samples: &[i16]) {
     let spec = WavSpec { channels: 1, sample_rate: SAMPLE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
     let mut writer = WavWriter::create(path, spec).unwrap();
     for sample in samples {
@@ -142,7 +144,8 @@ fn the_recorder_knows_what_is_streamed() {
 mod command {
     use super::*;
     use std::fs::File;
-    use std::process::Command;
+
+    use crate::processes::{frixel, said};
 
     const SCENE: &str = r#"
 version = 1
@@ -156,14 +159,10 @@ high_n = 0.018
 
     /// A play of the scene above, with its samples from a file or from standard input: the JSON and felt.csv.
     fn stream(folder: &Path, out: &str, arguments: &[&str], input: File) -> (serde_json::Value, Vec<u8>) {
-        let output = Command::new(env!("CARGO_BIN_EXE_frixel"))
-            .args(["play", "scene.toml", "--ideal", "--json", "--out", out])
-            .args(arguments)
-            .current_dir(folder)
-            .stdin(input)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let mut command = frixel();
+        command.args(["play", "scene.toml", "--ideal", "--json", "--out", out]).args(arguments);
+        let output = command.current_dir(folder).stdin(input).output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
         (serde_json::from_slice(&output.stdout).unwrap(), std::fs::read(folder.join(out).join("felt.csv")).unwrap())
     }
 

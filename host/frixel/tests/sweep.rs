@@ -3,9 +3,10 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
 use tempfile::TempDir;
+
+use crate::processes::run;
 
 const SCENE: &str = "version = 1\n[[layer]]\nname = \"plate\"\nkind = \"constant\"\nfriction_fraction = 0.5\n\
                      region = { x_mm = 20, y_mm = 10, width_mm = 80, height_mm = 60 }\n";
@@ -31,8 +32,7 @@ impl Folder {
 
     /// Whether the command succeeds, its output, and its notes and error.
     fn run_to_end(&self, line: &str) -> (bool, String, String) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-        let output = command.args(line.split_whitespace()).current_dir(self.0.path()).output().unwrap();
+        let output = run(self.0.path(), &line.split_whitespace().collect::<Vec<_>>());
         let text = |bytes| String::from_utf8(bytes).unwrap();
         (output.status.success(), text(output.stdout), text(output.stderr))
     }

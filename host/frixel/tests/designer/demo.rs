@@ -5,13 +5,13 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::succeed;
+use crate::processes::succeed;
 
 #[test]
 fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("frixel-out/brick.toml");
-    let (said, _) = succeed(folder.path(), &[]);
+    let said = succeed(folder.path(), &[]);
     for name in ["felt.csv", "felt.svg", "scene.png"] {
         let file = Path::new("frixel-out").join(name);
         assert!(said.contains(&file.display().to_string()), "{name} is not named in {said}");
@@ -29,7 +29,7 @@ fn the_demo_plays_an_edited_scene_and_never_overwrites_it() {
     mine.extend(b"after the end");
     fs::write(&picture, &mine).unwrap();
 
-    let (said, _) = succeed(folder.path(), &["demo"]);
+    let said = succeed(folder.path(), &["demo"]);
     assert!(said.contains("brick.toml plays as it is") && !said.contains("on mortar"), "{said}");
     assert_eq!(fs::read_to_string(&path).unwrap(), edited);
     assert_eq!(fs::read(&picture).unwrap(), mine);

@@ -5,24 +5,24 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{scenes, succeed};
+use crate::processes::{bundled, succeed};
 
 #[test]
 fn a_new_scene_is_checked_and_played_as_it_is() {
     let folder = TempDir::new().unwrap();
-    let picture = scenes().join("textures/brick.png");
+    let picture = bundled("textures/brick.png");
     fs::copy(&picture, folder.path().join("mine.png")).unwrap();
-    fs::copy(scenes().join("textures/wood.jpg"), folder.path().join("photo.jpg")).unwrap();
+    fs::copy(bundled("textures/wood.jpg"), folder.path().join("photo.jpg")).unwrap();
     for (name, arguments) in [
         ("near.toml", &["new", "near.toml", "--picture", "mine.png"][..]),
         ("photo.toml", &["new", "photo", "--picture", "photo.jpg"]),
         ("far.toml", &["new", "far", "--picture", picture.to_str().unwrap()]),
     ] {
-        let (said, _) = succeed(folder.path(), arguments);
+        let said = succeed(folder.path(), arguments);
         assert!(said.contains(&format!("frixel play {name}")), "{said}");
-        let (said, _) = succeed(folder.path(), &["check", name]);
+        let said = succeed(folder.path(), &["check", name]);
         assert!(!said.contains("stretched by"), "{said}");
-        let (said, _) = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
+        let said = succeed(folder.path(), &["play", name, "--seconds", "0.5"]);
         assert!(said.contains("  in this play     "), "{said}");
     }
     fs::create_dir(folder.path().join("sub")).unwrap();
@@ -34,11 +34,11 @@ fn a_new_scene_is_checked_and_played_as_it_is() {
     }
     #[cfg(unix)]
     named_as_it_is(folder.path(), "a\\b.png");
-    let (said, _) = succeed(folder.path(), &["new", "my ribs"]);
+    let said = succeed(folder.path(), &["new", "my ribs"]);
     assert!(said.contains("frixel check 'my ribs.toml'\n"), "{said}");
     let text = fs::read_to_string(folder.path().join("near.toml")).unwrap();
     assert!(text.contains("levels = \"stretch\"") && !text.contains("pitch_mm"), "{text}");
-    let (said, _) = succeed(folder.path(), &["check", "photo.toml"]);
+    let said = succeed(folder.path(), &["check", "photo.toml"]);
     assert!(said.contains("colour turned to grey by luma") && said.contains("the finest pitch that fits"), "{said}");
     assert!(text.contains("picture = \"mine.png\"") && text.lines().count() < 20, "{text}");
 }

@@ -7,7 +7,7 @@ use std::fs;
 use frixel_testkit::golden;
 use tempfile::TempDir;
 
-use super::{scenes, succeed};
+use crate::processes::{repository, succeed};
 
 /// The name at the beginning of a line of output.
 fn name(line: &str) -> &str {
@@ -16,9 +16,9 @@ fn name(line: &str) -> &str {
 
 #[test]
 fn felt_friction_is_printed_by_the_commands_beside_it() {
-    let path = scenes().join("../docs/inside/numbers.md");
+    let path = repository().join("docs/inside/numbers.md");
     let text = fs::read_to_string(&path).unwrap();
-    let scenes = scenes().display().to_string();
+    let scenes = repository().join("scenes").display().to_string();
     let (mut printed, mut commands, mut figures) = (String::new(), 0, 0);
     let mut found = String::new();
     for line in text.lines() {
@@ -27,7 +27,7 @@ fn felt_friction_is_printed_by_the_commands_beside_it() {
             let arguments: Vec<String> =
                 command.split_whitespace().map(|word| word.replacen("scenes/", &format!("{scenes}/"), 1)).collect();
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-            (printed, _) = succeed(folder.path(), &arguments);
+            printed = succeed(folder.path(), &arguments);
             commands += 1;
         }
         let figure = line.strip_prefix("      ").filter(|_| !printed.is_empty());

@@ -4,20 +4,21 @@ use std::process::{Output, Stdio};
 
 use tempfile::TempDir;
 
-use super::{command, scene};
+use crate::processes::{bundled, frixel};
 
 /// Runs a command whose standard output, or whose both outputs, nobody reads.
 fn unread(arguments: &[&str], both: bool) -> Output {
     let folder = TempDir::new().unwrap();
     let closed = || Stdio::from(std::io::pipe().unwrap().1);
-    let mut command = command(folder.path(), arguments);
+    let mut command = frixel();
+    command.args(arguments).current_dir(folder.path());
     command.stdout(closed()).stderr(if both { closed() } else { Stdio::piped() });
     command.output().unwrap()
 }
 
 #[test]
 fn a_closed_pipe_ends_a_command_quietly() {
-    let brick = scene("brick.toml");
+    let brick = bundled("brick.toml").display().to_string();
     for arguments in [
         &["play", brick.as_str(), "--seconds", "0.1"][..],
         &["play", brick.as_str(), "--seconds", "0.1", "--json"],

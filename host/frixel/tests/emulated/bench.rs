@@ -1,6 +1,5 @@
 //! An emulated board under a finger that slides for ever.
 
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::Duration;
@@ -13,6 +12,8 @@ use frixel_hil_sim::emulated::{Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
 use frixel_play::{RigStream, start};
 use frixel_scene::{Program, compile};
+
+use crate::processes::bundled;
 
 /// Wall time between two checks of what is waited for.
 const NAP: Duration = Duration::from_millis(2);
@@ -97,8 +98,7 @@ const HOST_TIMEOUT_S: f32 = 1.0;
 
 /// One of the bundled scenes, for the emulated board.
 fn program(name: &str) -> Program {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
-    let mut program = compile(&scene_file::load(&path).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
+    let mut program = compile(&scene_file::load(&bundled(name)).unwrap(), &BOARD.limits, BOARD.tick_hz).unwrap();
     program.header.host_timeout_s = HOST_TIMEOUT_S;
     program
 }

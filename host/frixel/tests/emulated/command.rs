@@ -4,24 +4,24 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
 use tempfile::TempDir;
 
 use crate::bench::turn;
+use crate::processes::{bundled, frixel, said};
 use crate::{emulator, pico};
 
 /// Plays the brick with the longest host timeout that there is: on a busy machine pings are late.
 fn play(folder: &Path) -> Command {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     fs::create_dir_all(folder.join("textures")).unwrap();
-    fs::copy(scenes.join("textures/brick.png"), folder.join("textures/brick.png")).unwrap();
-    let brick = fs::read_to_string(scenes.join("brick.toml")).unwrap();
+    fs::copy(bundled("textures/brick.png"), folder.join("textures/brick.png")).unwrap();
+    let brick = fs::read_to_string(bundled("brick.toml")).unwrap();
     let scene = folder.join("brick.toml");
     fs::write(&scene, brick.replace("[drive]\n", "[drive]\nhost_timeout_ms = 1000\n")).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    let mut command = frixel();
     command.arg("play").arg(scene).args(["--port", "qemu", "--ideal", "--json"]).current_dir(folder);
     command
 }
@@ -193,8 +193,4 @@ fn the_program_that_fetches_the_picos_emulator_is_named_if_it_is_missing() {
     );
     let command = ["runs on node, which is not installed", "`apt-get install nodejs npm`"];
     Tools::new(&[]).refused_by(pico::play, Some(checkout.path()), &command);
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }

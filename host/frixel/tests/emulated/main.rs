@@ -13,4 +13,7 @@ mod example;
 mod injected_faults;
 mod link;
 mod pico;
+#[allow(dead_code, reason = "the other tests use the rest")]
+#[path = "../processes/mod.rs"]
+mod processes;
 mod scenarios;

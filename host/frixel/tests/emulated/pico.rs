@@ -8,6 +8,7 @@ use frixel_hil_sim::Board;
 use tempfile::TempDir;
 
 use crate::emulator;
+use crate::processes::{frixel, said};
 
 /// A band on an otherwise plain screen, which the stroke below crosses.
 const BAND: &str = "version = 1\n[[layer]]\nname = \"band\"\nkind = \"constant\"\n\
@@ -15,7 +16,7 @@ const BAND: &str = "version = 1\n[[layer]]\nname = \"band\"\nkind = \"constant\"
 
 pub(super) fn play(folder: &Path) -> Command {
     fs::write(folder.join("band.toml"), BAND).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
+    let mut command = frixel();
     command.args(["play", "band.toml", "--port", "pico", "--ideal", "--json"]).current_dir(folder);
     command
 }
@@ -28,8 +29,7 @@ fn a_band_is_felt_as_the_scene_asks_for_it() {
     }
     let folder = TempDir::new().unwrap();
     let output = play(folder.path()).args(["--from", "4,30", "--to", "116,45", "--seconds", "0.5"]).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
+    assert!(output.status.success(), "{}", said(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let ticks = Board::PICO.tick_hz / 2;
     assert_eq!((&json["rig"], &json["ticks"]), (&"pico".into(), &ticks.into()));

@@ -1,12 +1,11 @@
 //! The scenarios of `hil-sim/scenarios` on the emulated boards, through the command.
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
 use crate::bench::turn;
 use crate::emulator::{image, pico_image};
 use crate::example::{page, run, text};
+use crate::processes::{frixel, repository, said};
 
 /// Scenarios that a rig cannot run, each with the input that it lacks.
 const NOT_ON_QEMU: [(&str, &str); 1] = [("counters-wrap", "its emulator has no input for it")];
@@ -24,8 +23,8 @@ const FEW_ON_PICO: [&str; 1] = ["cable-cut"];
 /// Runs scenarios on a rig: those of `names`, and the ones that are `lacking`, which fail for the reason given.
 fn check(rig: &str, lacking: &[(&str, &str)], names: impl Fn(&str) -> bool) {
     let _turn = turn();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hil-sim/scenarios");
-    let mut files: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> =
+        fs::read_dir(repository().join("hil-sim/scenarios")).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| fs::read_to_string(file).unwrap().starts_with("scenario"));
     files.sort();
     let mut unmet = Vec::new();
@@ -35,10 +34,8 @@ fn check(rig: &str, lacking: &[(&str, &str)], names: impl Fn(&str) -> bool) {
         if reason.is_none() && !names(name) {
             continue;
         }
-        let mut command = Command::new(env!("CARGO_BIN_EXE_frixel"));
-        command.args(["sim", "--expect", "--rig", rig, "--scenario"]).arg(&file);
-        let output = command.output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let output = frixel().args(["sim", "--expect", "--rig", rig, "--scenario"]).arg(&file).output().unwrap();
+        let said = said(&output);
         let is_right = match reason {
             Some((_, reason)) => !output.status.success() && said.contains(reason),
             None => output.status.success(),
@@ -87,7 +84,7 @@ fn the_pages_first_example_holds_on_the_emulated_board() {
     }
     let _turn = turn();
     let output = run(&text(), "qemu");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
 }
 
 /// A `play` of it ends when the image has computed the scene's table. The page states how long that takes.
@@ -98,7 +95,7 @@ fn the_pages_first_example_holds_on_the_picos_image() {
     }
     let _turn = turn();
     let output = run(&text(), "pico");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
     let timeline = String::from_utf8(output.stdout).unwrap();
     let at_ms = |what: &str| {
         let line = timeline.lines().find_map(|line| line.strip_suffix(what)).unwrap();

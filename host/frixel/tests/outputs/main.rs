@@ -13,7 +13,7 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-use crate::processes::{frixel, repository};
+use crate::processes::{bundled, frixel};
 
 const SCENE: &str = "version = 1\n[[layer]]\nkind = \"grating\"\nwavelength_mm = 4\nlow_fraction = 0\n\
                      high_fraction = 0.9\n";
@@ -33,7 +33,7 @@ impl Folder {
         let row = |volts: f64| format!("{volts},0.5,{},0.001\n", 0.25 + 5e-6 * volts * volts);
         let header = "voltage_v_rms,normal_force_n,friction_n,friction_se_n\n";
         folder.write("data.csv", &(header.to_owned() + &[0.0, 50.0, 100.0, 150.0].map(row).concat()));
-        fs::copy(repository().join("scenes/textures/brick.png"), folder.path("picture.png")).unwrap();
+        fs::copy(bundled("textures/brick.png"), folder.path("picture.png")).unwrap();
         folder
     }
 

@@ -56,37 +56,27 @@ fn with_forces_on_stdin(folder: &Path, arguments: &[&str]) -> Output {
     output
 }
 
-/// The fitted number, and its interval.
-fn fitted(folder: &Path, key: &str, interval: &str) -> (f64, [f64; 2]) {
-    let json = succeed(folder, &["finger", "fit", "data.csv", "--json"]);
-    let json: Value = serde_json::from_str(&json).unwrap();
-    (json[key].as_f64().unwrap(), [0, 1].map(|end| json[interval][end].as_f64().unwrap()))
-}
-
-/// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs.
+/// The person of a seed is on the virtual board, and no scene changes that: what is fitted is theirs. The sensor's rows
+/// are in a file, or come on standard input meanwhile.
 #[test]
 fn a_person_at_a_port_is_calibrated_with_the_forces_of_a_sensor() {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
-    calibrate(folder.path(), &["--port", &board.port, "--forces", "board/forces.csv"], run);
-    let drawn = Person::drawn(5).finger.friction_coefficient;
-    let (coefficient, [low, high]) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
-    assert!((coefficient / drawn - 1.0).abs() < 0.05, "{coefficient}, not {drawn}");
-    assert!(low < coefficient && coefficient < high, "{coefficient} is outside of {low} to {high}");
-}
-
-/// The same, while the sensor's rows come on standard input.
-#[test]
-fn forces_are_read_from_standard_input_while_the_board_plays() {
-    let folder = TempDir::new().unwrap();
-    let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
-    calibrate(folder.path(), &["--port", &board.port, "--forces", "-"], with_forces_on_stdin);
-    drop(board);
-    let data = fs::read_to_string(folder.path().join("data.csv")).unwrap();
-    assert!(data.lines().count() > 8_000, "{} rows", data.lines().count());
-    let (coefficient, _) = fitted(folder.path(), "friction_coefficient", "friction_coefficient_interval");
-    let drawn = Person::drawn(5).finger.friction_coefficient;
-    assert!((coefficient / drawn - 1.0).abs() < 0.05, "{coefficient}, not {drawn}");
+    type Run = fn(&Path, &[&str]) -> Output;
+    for (forces, run) in [("board/forces.csv", run as Run), ("-", with_forces_on_stdin)] {
+        let folder = TempDir::new().unwrap();
+        let board = VirtualBoard::start(folder.path(), &[&STROKES[..], &["--finger-seed", "5"]].concat());
+        calibrate(folder.path(), &["--port", &board.port, "--forces", forces], run);
+        drop(board);
+        let rows = fs::read_to_string(folder.path().join("data.csv")).unwrap().lines().count();
+        assert!(rows > 8_000, "{forces}: {rows} rows");
+        let json = succeed(folder.path(), &["finger", "fit", "data.csv", "--json"]);
+        let json: Value = serde_json::from_str(&json).unwrap();
+        let coefficient = json["friction_coefficient"].as_f64().unwrap();
+        let interval = &json["friction_coefficient_interval"];
+        let drawn = Person::drawn(5).finger.friction_coefficient;
+        assert!((coefficient / drawn - 1.0).abs() < 0.05, "{forces}: {coefficient}, not {drawn}");
+        let is_inside = interval[0].as_f64() < Some(coefficient) && Some(coefficient) < interval[1].as_f64();
+        assert!(is_inside, "{forces}: {coefficient} is outside of {interval}");
+    }
 }
 
 #[test]

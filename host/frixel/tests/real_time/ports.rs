@@ -6,11 +6,11 @@ use std::path::Path;
 use tempfile::TempDir;
 
 use crate::VirtualBoard;
-use crate::processes::{repository, run, said, succeed};
+use crate::processes::{bundled, run, said, succeed};
 
 /// Writes the keyboard with the longest host timeout that there is: on a busy machine pings are late.
 fn write_patient_scene(path: &Path) {
-    let text = fs::read_to_string(repository().join("scenes/keyboard.toml")).unwrap();
+    let text = fs::read_to_string(bundled("keyboard.toml")).unwrap();
     assert!(!text.contains("[drive]"));
     fs::write(path, text.replacen("[[layer]]", "[drive]\nhost_timeout_ms = 1000\n\n[[layer]]", 1)).unwrap();
 }
@@ -64,7 +64,7 @@ fn a_finger_on_a_board_is_recorded_as_a_stroke() {
     let y_mm = |line: &str| line.rsplit(',').next().unwrap().parse::<f64>();
     let near = text.lines().skip(1).filter_map(|line| y_mm(line).ok()).all(|y_mm| (y_mm - 20.0).abs() < 2.0);
     assert!(near && text.lines().count() > 300, "{text}");
-    let brick = repository().join("scenes/brick.toml").display().to_string();
+    let brick = bundled("brick.toml").display().to_string();
     let printed = succeed(folder.path(), &["play", &brick, "--stroke", "mine.csv"]);
     assert!(printed.contains("friction error"), "{printed}");
 }

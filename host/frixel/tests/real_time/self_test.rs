@@ -1,8 +1,8 @@
 //! `frixel board selftest --wires` against a simulated board behind a pseudo-terminal, as a stranger uses it.
 
 use std::fs;
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::Output;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
@@ -11,6 +11,8 @@ use frixel_board::self_test::{GREETING, Stop};
 use frixel_hil_sim::PseudoTerminal;
 use frixel_hil_sim::looped_board::{Defect, LoopedRig, TerminalPort};
 use serde_json::Value;
+
+use crate::processes::{run_fed, said};
 
 /// Runs the command beside a board, and returns what the board's script returned.
 fn self_test(
@@ -26,15 +28,9 @@ fn self_test(
 }
 
 fn command(port: &str, seconds: u32, typed: &str, report: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_frixel"))
-        .args(["board", "selftest", "--wires", "--port", port, "--seconds", &seconds.to_string(), "-o", report])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(typed.as_bytes()).unwrap();
-    child.wait_with_output().unwrap()
+    let seconds = seconds.to_string();
+    let arguments = ["board", "selftest", "--wires", "--port", port, "--seconds", &seconds, "-o", report];
+    run_fed(Path::new("."), &arguments, typed.as_bytes())
 }
 
 fn read(report: &str) -> Value {
@@ -42,7 +38,7 @@ fn read(report: &str) -> Value {
 }
 
 fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+    String::from_utf8_lossy(&output.stdout).into_owned() + &said(output)
 }
 
 #[test]
@@ -76,7 +72,7 @@ fn a_board_in_order_passes_and_its_report_is_a_file() {
 #[test]
 fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
     let folder = tempfile::tempdir().unwrap();
-    for (wrong, typed, said) in [
+    for (wrong, typed, says) in [
         (Defect::ReadyHigh, "", "unplug the amplifier"),
         (Defect::NoSyncWire, "unplugged\n", "the wire of SYNC is missing"),
         (Defect::LatchLate, "unplugged\n", "2 of the measurements"),
@@ -84,7 +80,7 @@ fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
         let report = folder.path().join(format!("{wrong:?}.json")).display().to_string();
         let (output, board) = self_test(wrong, 0, typed, &report);
         assert_eq!(output.status.code(), Some(1), "{}", text(&output));
-        assert!(String::from_utf8_lossy(&output.stderr).contains(said), "{}", text(&output));
+        assert!(said(&output).contains(says), "{}", text(&output));
         assert_ne!(board.join().unwrap(), Ok(0));
         let report = read(&report);
         assert_eq!(report["passed"], false);
@@ -113,7 +109,7 @@ fn a_board_that_never_stops_talking_ends_with_a_sentence() {
     let folder = tempfile::tempdir().unwrap();
     let report = folder.path().join("report.json").display().to_string();
     let asks = format!("Then type: {GREETING}\n");
-    for (again, said) in [
+    for (again, says) in [
         ("noise without an end", "does not run the self-test"),
         ("a line of another program\n", "does not run the self-test"),
         (asks.as_str(), "has sent 1000 lines"),
@@ -140,6 +136,6 @@ fn a_board_that_never_stops_talking_ends_with_a_sentence() {
             output
         });
         assert_eq!(output.status.code(), Some(1), "{}", text(&output));
-        assert!(text(&output).contains(said), "{again}: {}", text(&output));
+        assert!(text(&output).contains(says), "{again}: {}", text(&output));
     }
 }

@@ -12,7 +12,7 @@ use std::process::Stdio;
 
 use tempfile::TempDir;
 
-use crate::processes::{frixel, repository, run, said};
+use crate::processes::{bundled, frixel, repository, run, said};
 use crate::{Running, VirtualBoard, until};
 
 /// The port in the page.
@@ -135,7 +135,7 @@ fn expect_playable(folder: &Path) {
 fn every_command_of_the_tutorial_runs() {
     let page = File::open(repository().join("docs/design/tutorial.md")).unwrap();
     let folder = TempDir::new().unwrap();
-    fs::copy(repository().join("scenes/textures/wood.jpg"), folder.path().join("wood.jpg")).unwrap();
+    fs::copy(bundled("textures/wood.jpg"), folder.path().join("wood.jpg")).unwrap();
     let mut reader = Reader { folder, board: None, watching: None, printed: String::new(), commands: 0, edits: 0 };
     let mut lines = BufReader::new(page).lines().map(Result::unwrap);
     let mut paragraph = String::new();

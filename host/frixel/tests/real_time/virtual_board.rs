@@ -4,34 +4,21 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 
 use tempfile::TempDir;
 
-use crate::processes::frixel;
+use crate::processes::{bundled, frixel};
 use crate::{VirtualBoard, rows_so_far, until};
 
 /// The brick in a folder, with the longest host timeout that there is: on a busy machine pings are late.
 fn scene(folder: &Path) -> PathBuf {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let brick = fs::read_to_string(scenes.join("brick.toml")).unwrap();
+    let brick = fs::read_to_string(bundled("brick.toml")).unwrap();
     let path = folder.join("brick.toml");
-    let picture = scenes.join("textures/brick.png").display().to_string();
+    let picture = bundled("textures/brick.png").display().to_string();
     let timeout = "[drive]\nhost_timeout_ms = 1000\n";
     fs::write(&path, brick.replace("textures/brick.png", &picture).replace("[drive]\n", timeout)).unwrap();
     path
-}
-
-/// A client in a process of its own.
-fn client(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Child {
-    play_command(scene, port, seconds, folder).spawn().unwrap()
-}
-
-fn play_command(scene: &Path, port: &str, seconds: &str, folder: &Path) -> Command {
-    let mut command = frixel();
-    command.arg("play").arg(scene).args(["--port", port, "--seconds", seconds, "--json", "--out"]).arg(folder);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
 }
 
 /// Ends a process as a person would.
@@ -63,7 +50,9 @@ impl Board {
     }
 
     fn play(&self, seconds: &str, folder: &Path) -> Child {
-        client(&self.scene, &self.board.port, seconds, folder)
+        let mut command = frixel();
+        command.arg("play").arg(&self.scene).args(["--port", &self.board.port, "--seconds", seconds]);
+        command.args(["--json", "--out"]).arg(folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
     }
 }
 

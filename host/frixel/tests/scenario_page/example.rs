@@ -1,13 +1,14 @@
 //! The first example of `docs/inside/scenarios.md`, as a reader of the page has it.
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use tempfile::TempDir;
 
+use crate::processes::{self, repository, succeed};
+
 pub(crate) fn page() -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/inside/scenarios.md")).unwrap()
+    fs::read_to_string(repository().join("docs/inside/scenarios.md")).unwrap()
 }
 
 /// The scenario of the page.
@@ -21,9 +22,6 @@ pub(crate) fn text() -> String {
 pub(crate) fn run(scenario: &str, rig: &str) -> Output {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("cut.toml"), scenario).unwrap();
-    let frixel = |arguments: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_frixel")).args(arguments).current_dir(folder.path()).output().unwrap()
-    };
-    assert!(frixel(&["new", "waves"]).status.success());
-    frixel(&["sim", "--scenario", "cut.toml", "--expect", "--rig", rig])
+    succeed(folder.path(), &["new", "waves"]);
+    processes::run(folder.path(), &["sim", "--scenario", "cut.toml", "--expect", "--rig", rig])
 }
