@@ -219,12 +219,12 @@ impl Placed {
     /// The changes that move it; all copies stay on the screen.
     fn moved(&self, by: [f64; 2]) -> Vec<Value> {
         let first = self.first_box();
-        let limited = |axis: usize, by: f64, place: f64, side: f64, screen: f64| match self.box_mm {
-            None => by,
-            Some(_) => {
-                let [least, most] = self.spread(axis);
-                by.min(screen - (place + most) - side).max(-(place + least))
+        let limited = |axis: usize, by: f64, place: f64, side: f64, screen: f64| {
+            if self.box_mm.is_none() {
+                return by;
             }
+            let [least, most] = self.spread(axis);
+            by.min(screen - (place + most) - side).max(-(place + least))
         };
         let [dx, dy] = by;
         let by = [
@@ -248,7 +248,7 @@ impl Placed {
     fn resized(&self, to: BoxMm) -> Vec<Value> {
         if self.box_mm.is_none() && self.region().is_none() {
             let BoxMm { x, y, width, height } = to;
-            return vec![self.new_region(json!({ "x_mm": x, "y_mm": y, "width_mm": width, "height_mm": height }))];
+            return vec![self.new_region(&json!({ "x_mm": x, "y_mm": y, "width_mm": width, "height_mm": height }))];
         }
         let from = self.first_box();
         let changes = if let Some(vertices) = self.vertices() {
@@ -277,16 +277,16 @@ impl Placed {
         let mut region = Value::from(self.region().cloned().unwrap_or_default());
         for change in changes {
             let path = change["path"].as_array().into_iter().flatten().skip(3);
-            let pointer: String =
-                path.map(|key| format!("/{}", key.as_str().map_or(key.to_string(), str::to_owned))).collect();
+            let keys = path.map(|key| key.as_str().map_or(key.to_string(), str::to_owned));
+            let pointer: String = keys.flat_map(|key| ["/".to_owned(), key]).collect();
             if let Some(place) = region.pointer_mut(&pointer) {
                 *place = change["value"].clone();
             }
         }
-        vec![self.new_region(region)]
+        vec![self.new_region(&region)]
     }
 
-    fn new_region(&self, value: Value) -> Value {
+    fn new_region(&self, value: &Value) -> Value {
         json!({ "path": self.path(true, &[]), "value": value, "decimals": DECIMALS, "after": "kind" })
     }
 }

@@ -31,7 +31,7 @@ const SLIDING_MM_S: f64 = 8.0;
 
 fn compiled(layers: &str) -> Program {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &SceneFolder(scenes)).unwrap();
+    let scene = Scene::parse(format!("{HEAD}{layers}"), "test.toml", &SceneFolder(scenes)).unwrap();
     let board = RigConfig::default().board;
     compile(&scene, &board.limits, board.tick_hz).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -369,7 +369,7 @@ mod tests {
     /// A path of 5,000 parts, and tables as deep, ended the process.
     #[test]
     fn a_plan_without_end_is_one_short_sentence() {
-        let plan = |rest: &str| Plan::parse(&format!("scenes = [\"a.toml\"]\npeople = 1\n{rest}"), "plan.toml");
+        let plan = |rest: &str| Plan::parse(format!("scenes = [\"a.toml\"]\npeople = 1\n{rest}"), "plan.toml");
         let path = |parts: usize| vec!["a"; parts].join(".");
         assert!(plan(&format!("[parameters]\n\"{}\" = [1]\n", path(64))).is_ok());
         for (rest, says) in [

@@ -83,7 +83,7 @@ impl Recorded for Line {
 type Playing = Player<PollingLink<Line>>;
 
 fn program(layers: &str) -> Program {
-    let scene = Scene::parse(&format!("version = 1\n{layers}"), "test.toml", &BTreeMap::new()).unwrap();
+    let scene = Scene::parse(format!("version = 1\n{layers}"), "test.toml", &BTreeMap::new()).unwrap();
     let board = RigConfig::default().board;
     compile(&scene, &board.limits, board.tick_hz).unwrap()
 }

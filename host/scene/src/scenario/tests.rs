@@ -8,7 +8,7 @@ use super::*;
 const HEAD: &str = "scenario = 1\nscene = \"plate.toml\"\nseconds = 2\n";
 
 fn parsed(tables: &str) -> Result<Scenario, String> {
-    Scenario::parse(&format!("{HEAD}{tables}"), "test.toml").map_err(|error| error.to_string())
+    Scenario::parse(format!("{HEAD}{tables}"), "test.toml").map_err(|error| error.to_string())
 }
 
 #[test]

@@ -10,7 +10,7 @@ fn refusal(draft: &Program) -> String {
 #[test]
 fn drafts() {
     let draft = |layers: &str| {
-        let scene = Scene::parse(&format!("{HEAD}{layers}"), "test.toml", &*PICTURES).expect("it reads");
+        let scene = Scene::parse(format!("{HEAD}{layers}"), "test.toml", &*PICTURES).expect("it reads");
         assert!(compile(&scene, &LIMITS, TICK_HZ).is_err(), "{layers}");
         let program = compile_draft(&scene, &LIMITS, TICK_HZ).expect("a draft plays it");
         assert!(program.is_draft());

@@ -40,13 +40,13 @@ fn a_scene_of_too_many_layers_is_one_mistake() {
         region = { x_mm = 1, y_mm = 1, width_mm = 9, height_mm = 9 }\n\
         repeat = { columns = 64, rows = 64, dx_mm = 0.1, dy_mm = 0.1 }\n";
     for (layers, found) in [(flat.repeat(30_000), 30_000), (copies.repeat(2), 8_192)] {
-        let error = Scene::parse(&format!("version = 1\n{layers}"), "scene.toml", &BTreeMap::new());
+        let error = Scene::parse(format!("version = 1\n{layers}"), "scene.toml", &BTreeMap::new());
         let mistakes = error.map_or_else(|error| error.diagnostics, |scene| scene.mistakes().to_vec());
         let [mistake] = &mistakes[..] else { panic!("{}", mistakes.len()) };
         let says = format!("there are {found} layers in this scene, and at most 4096 are read: no board takes ");
         assert!(mistake.message.to_string().starts_with(&says), "{mistake}");
     }
-    let scene = Scene::parse(&format!("version = 1\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());
+    let scene = Scene::parse(format!("version = 1\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());
     assert!(scene.expect("it reads").mistakes().is_empty());
 }
 

@@ -97,7 +97,7 @@ fn gains_that_lead_out_of_reach_are_known_with_their_range() {
 #[test]
 fn a_diagnostic_has_the_number_of_its_layer() {
     let layers_of = |text: &str| {
-        let scene = Scene::parse(&format!("version = 1\n{text}"), "test.toml", &*PICTURES).expect("it reads");
+        let scene = Scene::parse(format!("version = 1\n{text}"), "test.toml", &*PICTURES).expect("it reads");
         let said =
             compile(&scene, &LIMITS, TICK_HZ).map_or_else(|error| error.diagnostics, |program| program.diagnostics);
         said.iter().map(|diagnostic| (diagnostic.kind, diagnostic.layer)).collect::<Vec<_>>()

@@ -22,7 +22,7 @@ fn program(layers: &str) -> Program {
 #[test]
 fn the_pictures_of_a_scene_have_so_many_pixels_together() {
     let layers = [layer("brick.png", 0, 40, ""), layer("leather.png", 0, 40, ""), layer("brick.png", 0, 40, "")];
-    let scene = Scene::parse(&format!("{SHORT}{}", layers.concat()), "scene.toml", &*PICTURES).expect("it reads");
+    let scene = Scene::parse(format!("{SHORT}{}", layers.concat()), "scene.toml", &*PICTURES).expect("it reads");
     let pixels = 512 * 512 + 200 * 200;
     assert!(pool::decoded(&scene, pixels).values().all(Result::is_ok));
     let decoded = pool::decoded(&scene, pixels - 1);
