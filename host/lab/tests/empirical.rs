@@ -67,7 +67,7 @@ fn a_profile_of_either_law_is_read_again() {
     assert_eq!(points.json()["points"].as_array().map(Vec::len), Some(3));
     for fit in [empirical(record(4.0)).unwrap(), points] {
         let profile = fit.profile(experiment.clone());
-        assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
+        assert_eq!(FingerProfile::parse(profile.to_toml(), "finger.toml").as_ref(), Ok(&profile));
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) use read::read;
 ///
 /// let dry = FingerProfile::bundled("dry").expect("it is bundled");
 /// assert_eq!(dry.evidence, Evidence::Assumed);
-/// assert_eq!(FingerProfile::parse(&dry.to_toml(), "dry.toml").as_ref(), Ok(&dry));
+/// assert_eq!(FingerProfile::parse(dry.to_toml(), "dry.toml").as_ref(), Ok(&dry));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct FingerProfile {

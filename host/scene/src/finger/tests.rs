@@ -50,7 +50,7 @@ threshold_interval_v_rms = [19, 26]
 #[test]
 fn a_written_profile_reads_back_the_same() {
     let empirical = FingerProfile::parse(EMPIRICAL, "finger.toml").expect("it reads");
-    assert_eq!(FingerProfile::parse(&empirical.to_toml(), "finger.toml"), Ok(empirical));
+    assert_eq!(FingerProfile::parse(empirical.to_toml(), "finger.toml"), Ok(empirical));
     for evidence in ["", MEASURED, PERCEPTUAL] {
         for elasticity in [
             "stiffness_pa_per_m = 1e7",
@@ -58,7 +58,7 @@ fn a_written_profile_reads_back_the_same() {
         ] {
             let text = format!("{ASSUMED}{evidence}").replace("stiffness_pa_per_m = 1e7", elasticity);
             let profile = FingerProfile::parse(&text, "finger.toml").expect("it reads");
-            assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml"), Ok(profile));
+            assert_eq!(FingerProfile::parse(profile.to_toml(), "finger.toml"), Ok(profile));
         }
     }
 }
@@ -79,7 +79,7 @@ proptest! {
             skin_gap_um,
             evidence: Evidence::Perceptual { experiment, threshold_v_rms: 1.0, threshold_interval_v_rms: [0.5, 2.0] },
         };
-        prop_assert_eq!(FingerProfile::parse(&profile.to_toml(), "finger.toml"), Ok(profile));
+        prop_assert_eq!(FingerProfile::parse(profile.to_toml(), "finger.toml"), Ok(profile));
     }
 }
 
