@@ -18,15 +18,14 @@ const PARTS: [(&str, &str, &[&str]); 10] = [
         "people",
         "fits of 200 simulated people and of 600 tables of means, and what they cover",
         &[
-            "cargo run --locked --release -p frixel-lab --example fit_floors",
-            "cargo test --locked --release -p frixel-lab --test main -- --ignored --nocapture coverage::",
+            "cargo test --locked --release -p frixel-lab --test main -- --ignored --nocapture coverage:: floors::",
             "cargo test --locked --release -p frixel-lab --lib -- --ignored --nocapture fit::means",
         ],
     ),
     (
         "fit",
         "`frixel finger calibrate` and `frixel finger fit` of 200 people with 20 seeds each, against steady friction",
-        &["cargo test --locked --release -p frixel --lib -- --ignored --nocapture calibrate::coverage"],
+        &["cargo test --locked --release -p frixel --test main -- --ignored --nocapture fit_command::coverage"],
     ),
     (
         "scenes",

@@ -6,21 +6,26 @@ use std::fs;
 use std::path::Path;
 
 use frixel_hil_sim::Person;
-use frixel_lab::fit::{self, Settings};
-use frixel_model::Waveform;
-use frixel_scene::{Evidence, FingerProfile, Profile, Screen};
+use frixel_lab::fit;
+use frixel_scene::{Evidence, FingerProfile, Profile};
 use serde_json::Value;
 use tempfile::TempDir;
 
 use self::simulated::steady;
+use self::tally::settings;
 use crate::processes::{run, said, succeed};
 
+#[path = "fit_coverage.rs"]
+mod coverage;
 #[allow(dead_code, unused_imports, reason = "the tests of the fit use the rest")]
 #[path = "../../lab/tests/person.rs"]
 mod person;
 #[allow(dead_code, reason = "the tests of the fit use the rest")]
 #[path = "../../lab/tests/simulated.rs"]
 mod simulated;
+#[allow(dead_code, reason = "the tests of the fit use the rest")]
+#[path = "../../lab/tests/tally.rs"]
+mod tally;
 
 fn fail(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
@@ -42,17 +47,9 @@ fn a_calibrated_person_is_recovered() {
         ends
     };
 
-    // The command prints the fit that `commands/finger/calibrate/coverage.rs` evaluates in one process.
-    let settings = Settings {
-        voltage_v_rms: 150.0,
-        normal_load_n: None,
-        coating_gap_m: 1e-6 * Screen::example().coating_gap_um(),
-        ripple: fit::measured_ripple(Waveform::Square, 1e3),
-        without: Vec::new(),
-        seed: 1,
-    };
+    // The command prints the fit that `fit_coverage.rs` evaluates.
     let rows = fit::rows(fs::File::open(folder.path().join("data.csv")).unwrap()).unwrap().value;
-    let summary = fit::fit(rows, &settings).unwrap().json();
+    let summary = fit::fit(rows, &settings()).unwrap().json();
     assert_eq!(json.trim_end(), summary.to_string());
 
     let person = Person::drawn(5);

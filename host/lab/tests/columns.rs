@@ -6,7 +6,7 @@ use frixel_lab::fit::{self, Fit, FitError, Row, words};
 use proptest::prelude::*;
 
 use super::person::Random;
-use super::settings;
+use super::tally::settings;
 
 /// A smooth law of the voltage near that of the contact model under a load.
 fn electric_n(voltage_v_rms: f64) -> f64 {

@@ -1,5 +1,5 @@
-//! How often the stated intervals contain what they are about. `cargo run -p frixel-lab --example fit_floors` has the
-//! floors over 200 people; these are a part of them.
+//! How often the stated intervals contain what they are about. `floors.rs` has the floors over 200 people; these are a
+//! part of them.
 //!
 //! The quantity is what a drive of 150 V rms adds to the friction of a finger on its screen, in steady and full slip
 //! under the median load of the recording, without noise: the simulator measures it on each person, apart from the
@@ -10,8 +10,8 @@ use frixel_lab::fit::{FitError, fit};
 
 use super::filters::Filter;
 use super::person::{self, Law, Protocol};
-use super::tally::{Tally, is_doubted};
-use super::{settings, simulated};
+use super::simulated;
+use super::tally::{Tally, is_doubted, settings};
 
 /// People in the test of every change.
 const FEW: u64 = 24;

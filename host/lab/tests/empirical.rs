@@ -7,7 +7,7 @@ use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile, Profile};
 
 use super::person::{Law, Person, Protocol};
-use super::settings;
+use super::tally::settings;
 
 /// Recordings for each exponent.
 const SEEDS: u64 = 3;

@@ -4,7 +4,7 @@
 use frixel_lab::fit::{self, Fit, FitError, Row, Settings, Verdict};
 
 use super::person::{Person, Protocol};
-use super::settings;
+use super::tally::settings;
 
 fn example() -> Vec<Row> {
     Person::example(3).record(&Protocol::default())

@@ -5,7 +5,8 @@ use frixel_lab::fit::{Fit, FitError, fit};
 
 use super::filters::Filter;
 use super::person::Protocol;
-use super::{settings, simulated};
+use super::simulated;
+use super::tally::settings;
 
 /// People who are measured with each sensor.
 const PEOPLE: u64 = 8;

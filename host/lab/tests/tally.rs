@@ -2,7 +2,21 @@
 
 use std::fmt;
 
-use frixel_lab::fit::{Estimate, Fit, FitError, Verdict};
+use frixel_lab::fit::{Estimate, Fit, FitError, Settings, Verdict, measured_ripple};
+use frixel_model::Waveform;
+use frixel_scene::Screen;
+
+/// How `frixel finger fit` fits without options.
+pub(super) fn settings() -> Settings {
+    Settings {
+        voltage_v_rms: 150.0,
+        normal_load_n: None,
+        coating_gap_m: Screen::example().coating_gap_m(),
+        ripple: measured_ripple(Waveform::Square, 1e3),
+        without: Vec::new(),
+        seed: 1,
+    }
+}
 
 /// Fits beside the truth.
 #[derive(Debug, Default)]

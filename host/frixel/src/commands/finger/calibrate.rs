@@ -1,7 +1,5 @@
 //! `frixel finger calibrate`: records the data that `frixel finger fit` needs.
 
-#[cfg(test)]
-mod coverage;
 mod forces;
 mod plan;
 mod recorded;

@@ -24,46 +24,27 @@ const FORCES_LATE: Duration = Duration::from_millis(500);
 
 pub(super) type Recorded = (Vec<BoardRow>, Vec<ForceRow>);
 
+/// Calibrates a simulated person: what the board reported, and what the sensor under the screen measured.
 pub(super) fn on_simulator(args: &CalibrateArgs, recording: &OutputFile, interrupt: &Interrupt) -> Result<Recorded> {
-    let simulated = Simulated::new(args)?;
-    simulated.plan.say(recording)?;
-    let (board, forces) = simulated.record(interrupt)?;
+    let coating_gap_m = screen(None)?.1.coating_gap_m();
+    let finger = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
+    let config = RigConfig::default().with(&WorldOptions { finger: Some(finger), ..WorldOptions::default() });
+    let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
+    plan.say(recording)?;
+    let stroke = plan.protocol.stroke().map_err(of_generated_stroke)?;
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &config, stroke, simulation_seed(args.seed, args.finger_seed))?;
+    let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
+    let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
+    let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
+    // A simulated recording is written when it is complete.
+    let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
+    drop(player);
     let forces = match &args.forces {
         Some(path) => forces::read(path)?,
-        None => forces,
+        None => sensor.take_rows(),
     };
     Ok((board, forces))
-}
-
-/// A calibration of a simulated person.
-pub(super) struct Simulated {
-    plan: Plan,
-    config: RigConfig,
-    seed: u64,
-}
-
-impl Simulated {
-    pub(super) fn new(args: &CalibrateArgs) -> Result<Self> {
-        let coating_gap_m = screen(None)?.1.coating_gap_m();
-        let finger = simulated_finger(args.finger_seed, coating_gap_m).map_err(of_finger)?;
-        let config = RigConfig::default().with(&WorldOptions { finger: Some(finger), ..WorldOptions::default() });
-        let plan = Plan::new(args, &config.board.limits, config.board.tick_hz)?;
-        Ok(Self { plan, config, seed: simulation_seed(args.seed, args.finger_seed) })
-    }
-
-    /// Plays the calibration, and returns what the board reported and what the sensor under the screen measured.
-    pub(super) fn record(&self, interrupt: &Interrupt) -> Result<Recorded> {
-        let stroke = self.plan.protocol.stroke().map_err(of_generated_stroke)?;
-        let mut memory = BoardMemory::new();
-        let rig = Rig::new(&mut memory, &self.config, stroke, self.seed)?;
-        let mut sensor = ForceSensor::new(ROW_HZ, self.config.board.tick_hz);
-        let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
-        let mut player = self.plan.start(Device::connect(PollingLink::new(line))?, 0)?;
-        // A simulated recording is written when it is complete.
-        let board = self.plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
-        drop(player);
-        Ok((board, sensor.take_rows()))
-    }
 }
 
 pub(super) fn on_port(
