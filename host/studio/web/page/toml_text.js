@@ -199,6 +199,15 @@ export function numberText(value, decimals) {
   return text === "-0" ? "0" : text;
 }
 
+/** Fields of a region in the order in which they are written, before all others. */
+const FIRST_FIELDS = ["shape", "x_mm", "y_mm", "width_mm", "height_mm"];
+
+/** @param {string} key */
+function rank(key) {
+  const at = FIRST_FIELDS.indexOf(key);
+  return at < 0 ? FIRST_FIELDS.length : at;
+}
+
 /**
  * @param {Value} value
  * @param {number} decimals
@@ -209,6 +218,7 @@ function valueText(value, decimals) {
   // TOML takes no DEL as it is.
   if (typeof value !== "object" || value === null) return JSON.stringify(value).replaceAll("\u007f", "\\u007f");
   if (Array.isArray(value)) return `[${value.map((each) => valueText(each, decimals)).join(", ")}]`;
-  const words = Object.entries(value).map(([key, each]) => `${key} = ${valueText(each, decimals)}`);
+  const entries = Object.entries(value).sort(([one], [other]) => rank(one) - rank(other));
+  const words = entries.map(([key, each]) => `${key} = ${valueText(each, decimals)}`);
   return `{ ${words.join(", ")} }`;
 }
