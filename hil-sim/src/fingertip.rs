@@ -117,11 +117,11 @@ impl Fingertip {
         self.scene_load_n = law.normal_load_n();
     }
 
-    /// Sets the half period of the carrier, over which friction follows the mean square: if so configured, or if the
-    /// law was measured, and so is a mean itself.
+    /// Sets the carrier's half period. Friction follows the mean square over it if configured, or if the law is
+    /// empirical, since measured friction is already a mean.
     pub(crate) fn set_half_period(&mut self, ticks: u32) {
         let is_mean = self.config.follows_mean_square || matches!(self.profile, FrictionLaw::Empirical(_));
-        self.mean_square = if is_mean { MeanSquare::over(ticks) } else { MeanSquare::default() };
+        self.mean_square.set_window(if is_mean { ticks } else { 0 });
     }
 
     /// Slides to `finger` in a tick, over an electrode with the voltage of `output`. `measured_load_n`, if any,

@@ -20,8 +20,8 @@ const PHASES: [f32; LEVELS / 2] = [0.980_785_3, 0.831_469_6, 0.555_570_2, 0.195_
 /// exceeds that of a constant voltage with the same rms: see [`LoadedContact::under_carrier`].
 ///
 /// Eight levels represent all ticks. The mean friction is within 1e-6 of that of every tick for a square wave whose
-/// lag is at most 1.5 ticks, and within 5e-5 for a lag of 2.5 ticks. For a sine it is within 3e-5 if its half period has
-/// at least 20 ticks, and within 0.3 % if it has fewer.
+/// lag is at most 1.5 ticks, within 5e-5 for a lag of 2.5 ticks, and within 0.6 % up to 15 ticks. For a sine it is
+/// within 3e-5 if its half period has at least 20 ticks, and within 0.3 % if it has fewer.
 ///
 /// [`LoadedContact::under_carrier`]: crate::LoadedContact::under_carrier
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,10 +77,8 @@ impl Ripple {
     pub const NONE: Self = Self { levels: [Level { excess: 0.0, weight: 1.0 }; LEVELS] };
 
     /// Whether the squared voltage is constant.
-    #[inline]
     pub(crate) fn is_none(&self) -> bool {
-        // The first level of every other ripple is its lowest or its highest.
-        self.levels.first().is_none_or(|level| level.excess == 0.0)
+        self.levels.iter().all(|level| level.excess == 0.0)
     }
 
     pub(crate) fn levels(&self) -> &[Level] {

@@ -1,5 +1,6 @@
 //! Mean friction under a carrier, against the mean over every tick of a wave followed step by step.
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
+#![allow(clippy::float_cmp, reason = "exact results are compared exactly")]
 
 use frixel_model::{Carrier, Contact, Finger, InverseTable, LoadedContact, Waveform};
 
@@ -47,7 +48,7 @@ fn carriers() -> impl Iterator<Item = (Carrier, f64)> {
     let sine = |half, lag_us, bound| (carrier(Waveform::Sine, half, lag_us), bound);
     let squares = [4, 5, 8, 9, 20, 80, 160].into_iter().flat_map(move |half| {
         let settled = [0.0, 1.0, 5.0, 20.0, 37.5].map(|lag_us| square(half, lag_us, 1e-6));
-        settled.into_iter().chain([square(half, 60.0, 5e-5), square(8, 400.0, 5e-5)])
+        settled.into_iter().chain([square(half, 60.0, 5e-5), square(8, 400.0, 5e-5), square(80, 199.0, 4e-3)])
     });
     let lags_us = [0.0, 5.0, 20.0, 60.0];
     let smooth = [20, 50, 160].into_iter().flat_map(move |half| lags_us.map(|lag_us| sine(half, lag_us, 3e-5)));
@@ -127,22 +128,45 @@ fn tables_stay_within_their_bound_of_the_mean() {
     }
 }
 
-/// Magnitudes at the ends of `f32`: the correction stays finite, and friction rises with the voltage.
 #[test]
-fn extreme_contacts_have_a_finite_correction() {
-    let ripple = carrier(Waveform::Sine, 20, 20.0).ripple();
-    for gap_m in [1e-12, 1e-9, 1e-6, 1e-2] {
-        for load_n in [0.0, 1e-6, 50.0] {
-            let Ok(contact) = Contact::new(&Finger::<f64>::EXAMPLE, gap_m).unwrap().under_load(load_n) else {
-                continue;
-            };
-            let carried = contact.under_carrier(ripple);
-            for voltage_v_rms in [1e-12, 1e-3, 1.0, 200.0] {
-                let (mean_n, constant_n) =
-                    (carried.electric_friction_n(voltage_v_rms), contact.electric_friction_n(voltage_v_rms));
-                let ratio = mean_n / constant_n;
-                assert!((1.0 - 1e-12..1.6).contains(&ratio), "{gap_m} m, {load_n} N, {voltage_v_rms} V: {ratio}");
+fn zero_volts_and_no_friction_belong_together() {
+    for (carrier, _) in carriers() {
+        for contact in soft_and_hard_fingers() {
+            let carried = contact.under_carrier(carrier.ripple());
+            assert_eq!(carried.electric_friction_n(0.0), 0.0);
+            for friction_n in [0.0, -1.0, f64::NAN] {
+                assert_eq!(carried.voltage_v_rms(friction_n), 0.0);
             }
         }
     }
+}
+
+/// The extremes of the parameters that a board takes: a table is refused, or rises to the largest voltage.
+#[test]
+fn tables_of_extreme_fingers_are_refused_or_rise() {
+    let (mut built, mut refused) = (0, 0);
+    let lengths = [[1e-4_f32, 1.0], [1e3, 1e14], [1e-3, 100.0], [1e-12, 1e-2], [0.0, 50.0], [1.0, 200.0]];
+    for (waveform, corner) in
+        [Waveform::Square, Waveform::Sine].into_iter().flat_map(|form| (0..64).map(move |at| (form, at)))
+    {
+        let mut chosen = lengths.iter().enumerate().map(|(bit, ends)| ends[corner >> bit & 1]);
+        let mut next = || chosen.next().unwrap();
+        let finger = Finger { radius_m: next(), stiffness_pa_per_m: next(), friction_coefficient: next() };
+        let (gap_m, load_n, voltage_max_v_rms) = (next(), next(), next());
+        let ripple = carrier(waveform, 20, 20.0).ripple();
+        let table = InverseTable::of_finger(&finger, gap_m, load_n, &ripple, voltage_max_v_rms, f32::INFINITY);
+        let Ok(table) = table else {
+            refused += 1;
+            continue;
+        };
+        built += 1;
+        let most_n = table.electric_friction_max_n();
+        let voltages = (0..=1000).map(|step| table.voltage_v_rms(most_n * (step as f32 / 1000.0)));
+        let mut before_v_rms = 0.0;
+        for voltage_v_rms in voltages {
+            assert!((before_v_rms..=voltage_max_v_rms).contains(&voltage_v_rms), "{finger:?} {gap_m} {load_n}");
+            before_v_rms = voltage_v_rms;
+        }
+    }
+    assert!(built > 0 && refused > 0, "{built} {refused}");
 }

@@ -254,9 +254,9 @@ impl Header {
         Carrier::new(self.waveform, half_period_ticks, tick_hz, limits.edge_time_constant_s)
     }
 
-    /// Steady friction of the scene's finger at a constant voltage, in `f64`, from the board's `f32` numbers. The knots of a law depend on
-    /// the largest voltage: if the peak limit allows less than `voltage_max_v_rms`, a board's law is that of a header
-    /// with the lower voltage.
+    /// Steady friction of the scene's finger at a constant voltage, in `f64`, from the board's `f32` numbers. The knots
+    /// of a law depend on the largest voltage: if the peak limit allows less than `voltage_max_v_rms`, a board's law is
+    /// that of a header with the lower voltage.
     ///
     /// # Errors
     ///

@@ -5,13 +5,13 @@
 use crate::cost::Cost;
 
 // A tick that looks at layers and finds none.
-pub(crate) const EMPTY: Cost = Cost::new(991, 9952);
+pub(crate) const EMPTY: Cost = Cost::new(991, 9936);
 
 // What a sine carrier adds.
-pub(crate) const SINE_CARRIER: Cost = Cost::new(32, 2623);
+pub(crate) const SINE_CARRIER: Cost = Cost::new(32, 2643);
 
 // A curve, and each of its points.
-pub(crate) const SPEED: Cost = Cost::new(157, 3873);
+pub(crate) const SPEED: Cost = Cost::new(157, 3866);
 pub(crate) const SPEED_POINT: Cost = Cost::new(8, 117);
 
 // The stream's own work, wherever the finger is.
@@ -27,22 +27,22 @@ pub(crate) const POLYGON_EDGE_LEVEL: Cost = Cost::new(26, 969);
 
 /// Layers, in a rectangle; `kind::measured_cost` finds one by its name.
 pub(crate) const LAYERS: &[(&str, Cost)] = &[
-    ("bitmap", Cost::new(227, 4492)),
-    ("bitmap_tiled", Cost::new(282, 7087)),
-    ("button", Cost::new(228, 4410)),
+    ("bitmap", Cost::new(227, 4503)),
+    ("bitmap_tiled", Cost::new(282, 7090)),
+    ("button", Cost::new(228, 4455)),
     ("constant", Cost::new(76, 242)),
-    ("direction", Cost::new(178, 4547)),
-    ("drift", Cost::new(44, 438)),
-    ("drifting_rings", Cost::new(84, 3397)),
-    ("edge", Cost::new(184, 4573)),
-    ("noise", Cost::new(406, 23304)),
-    ("rings", Cost::new(40, 2920)),
-    ("saw", Cost::new(122, 2024)),
-    ("sine", Cost::new(143, 3413)),
-    ("spokes", Cost::new(91, 3764)),
-    ("square", Cost::new(135, 1900)),
-    ("stream", Cost::new(101, 1004)),
-    ("triangle", Cost::new(127, 2364)),
-    ("vibration_sine", Cost::new(187, 3674)),
-    ("vibration_square", Cost::new(150, 1516)),
+    ("direction", Cost::new(178, 4544)),
+    ("drift", Cost::new(44, 440)),
+    ("drifting_rings", Cost::new(84, 3414)),
+    ("edge", Cost::new(184, 4597)),
+    ("noise", Cost::new(406, 23337)),
+    ("rings", Cost::new(40, 2906)),
+    ("saw", Cost::new(122, 2043)),
+    ("sine", Cost::new(143, 3427)),
+    ("spokes", Cost::new(91, 3756)),
+    ("square", Cost::new(135, 1913)),
+    ("stream", Cost::new(101, 1017)),
+    ("triangle", Cost::new(127, 2376)),
+    ("vibration_sine", Cost::new(187, 3662)),
+    ("vibration_square", Cost::new(150, 1541)),
 ];

@@ -9,8 +9,13 @@ pub(super) struct MeanSquare {
 }
 
 impl MeanSquare {
-    pub(super) fn over(ticks: u32) -> Self {
-        Self { window_v2: vec![0.0; ticks as usize], ..Self::default() }
+    /// Averages over this number of ticks. A new window begins with the mean of the old one.
+    pub(super) fn set_window(&mut self, ticks: u32) {
+        let (before, ticks) = (self.window_v2.len(), ticks as usize);
+        if ticks != before {
+            let mean_v2 = if before > 0 { self.sum_v2 / before as f64 } else { 0.0 };
+            *self = Self { window_v2: vec![mean_v2; ticks], next: 0, sum_v2: mean_v2 * ticks as f64 };
+        }
     }
 
     /// The mean with the squared voltage of a tick, in V^2.

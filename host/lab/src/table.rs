@@ -26,11 +26,10 @@ use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, Reader, ReaderBuilder};
 use encoding_rs::mem::decode_latin1;
-
-use crate::input::{ROWS_MAX, at_most, check_header};
 use frixel_play::TO_THE_END;
 use frixel_scene::{FileKind, Nearest, WrongKind, brief, check_toml};
 
+use crate::input::{ROWS_MAX, at_most, check_header};
 use crate::recording::{MAGIC, Recording};
 
 use blanks::Blanks;
@@ -47,7 +46,7 @@ use utf16::Utf8;
 /// Spellings of an unknown value.
 const UNKNOWN: [&str; 6] = ["", "nan", "na", "n/a", "<na>", "null"];
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
-/// Number of bytes at the beginning of a file from which its format is detected. They contain a table's header.
+/// Number of bytes at the beginning of a file that tell its kind and format. They contain a table's header.
 pub(crate) const HEAD_BYTES: u64 = 64 << 10;
 
 /// A column that a caller reads.

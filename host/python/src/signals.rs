@@ -19,10 +19,11 @@ pub(crate) fn raised_by_signal() -> Option<PyErr> {
     checked.err()
 }
 
-/// Number of values between checks of Python's signals; at most a tenth of a second.
+/// Values between two checks of Python's signals, which take at most a tenth of a second.
 const CHUNK: usize = 4096;
 
-/// Maps values, until one fails or a signal is pending. A thread, as of [`interruptible`], would cost more than a value.
+/// Maps values until one fails or a signal is pending. Unlike [`interruptible`], starts no thread, which would cost more
+/// than a few values.
 pub(crate) fn mapped<T: Sync, U: Send, E: Send>(
     py: Python<'_>,
     values: &[T],

@@ -62,7 +62,6 @@ fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
         unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
     })?;
     let files = KeptFiles::new(Some(SceneFolder::of(&path)), NamedFiles::new());
-    let mistakes = |error| Raised(Python::attach(|py| scene_error(py, &error)));
     ParsedScene::parse(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     Ok(Source::new(name, text, files.into_kept()))

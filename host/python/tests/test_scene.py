@@ -52,7 +52,7 @@ def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="this scene file cannot be read"):
         Scene.load(tmp_path)
     (tmp_path / "brick.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(5 << 20))
-    with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a scene: make a scene of it with"):
+    with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a scene: make a scene"):
         Scene.load(tmp_path / "brick.png")
     with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a finger profile: "):
         Finger.load(tmp_path / "brick.png")

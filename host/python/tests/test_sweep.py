@@ -184,7 +184,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
     with pytest.raises(ParameterError, match="this plan cannot be read"):
         sweep.cells(tmp_path / "nowhere.toml")
     (tmp_path / "finger.toml").write_text("friction_coefficient = 0.5\n")
-    with pytest.raises(ParameterError, match="this is a finger profile; expected a plan of a sweep: pass it with --finger"):
+    with pytest.raises(ParameterError, match="this is a finger profile; expected a plan of a sweep: pass it"):
         sweep.cells(tmp_path / "finger.toml")
     with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")

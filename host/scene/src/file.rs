@@ -110,13 +110,13 @@ impl Design {
 }
 
 impl Scene {
-    /// Reads the text or the bytes of a scene file. Messages call the file `name`; `files` provides the pictures, the profiles and
-    /// the included files that the file names.
+    /// Reads the text or the bytes of a scene file. Messages call the file `name`. `files` provides the pictures,
+    /// profiles and included files that it names.
     ///
     /// # Errors
     ///
-    /// Fails if the file is of another kind or not TOML, or if a part outside the layers has mistakes. Mistakes of layers are reported by
-    /// [`super::compile`], together with its own.
+    /// Fails if the file is of another kind or not TOML, or if a part outside the layers has mistakes.
+    /// [`super::compile`] reports mistakes of layers together with its own.
     pub fn parse(text: impl AsRef<[u8]>, name: &str, files: &dyn Files) -> Result<Self, CompileError> {
         let text = FileKind::Scene.text(text.as_ref(), name)?;
         let Gathered { source, mistakes } = include::gather(name, text, files);

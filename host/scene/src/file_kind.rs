@@ -81,6 +81,11 @@ impl WrongKind {
 }
 
 impl FileKind {
+    /// Whether files of this kind are TOML text.
+    pub fn is_toml(self) -> bool {
+        matches!(self, Self::Scene | Self::Finger | Self::Screen | Self::TouchSource | Self::Plan | Self::Scenario)
+    }
+
     /// The kind of a file, by its whole content or the beginning of it; `None` if it has no mark of any kind. A text
     /// with mistakes still has a kind.
     ///

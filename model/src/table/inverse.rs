@@ -241,7 +241,8 @@ impl InverseTableFilling {
         self.0.rows.len()
     }
 
-    /// Computes the next `rows_max` rows, with three evaluations of the closed form each. `table` must be the table
+    /// Computes the next `rows_max` rows, with three evaluations of the closed form each, and under a
+    /// ripple up to four steps over eight levels for each of them. `table` must be the table
     /// that was begun. Returns whether it is finished.
     pub fn fill(&mut self, table: &mut InverseTable, rows_max: usize) -> Result<bool, TableError> {
         self.0.fill(table, rows_max)

@@ -50,5 +50,5 @@ pub trait PlayListener {
 /// Records nothing.
 impl PlayListener for () {}
 
-/// Keeps the board's messages.
+/// Records no changes: the link adds the board's messages.
 impl PlayListener for Vec<Telemetry> {}

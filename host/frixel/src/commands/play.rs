@@ -75,7 +75,7 @@ pub(super) struct PlayArgs {
     /// Leave out load changes, noise, pre-sliding, leakage, offsets and lost touch reports.
     #[arg(long)]
     ideal: bool,
-    /// Simulated skin: `no-leakage` of charge, friction by `mean-square` (docs/inside/evidence.md).
+    /// Simulated skin: `no-leakage`; `mean-square`, whose friction follows the rms voltage.
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', hide_possible_values = true, help_heading = RARE)]
     skin: Vec<Skin>,
     /// Seed of a simulated person, for whom the scene was not made.

@@ -122,7 +122,7 @@ pub(crate) struct WorldReport {
 /// Effects of the simulated world beyond the contact model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Effects {
-    /// Whether there are none.
+    /// Whether the world is ideal, without the effects of amplifier, finger and touch source.
     pub is_ideal: bool,
     /// Whether charge leaks through the skin, on which measurements disagree.
     pub has_leakage: bool,
@@ -132,19 +132,26 @@ pub(crate) struct Effects {
 
 impl Effects {
     /// The name of the world, for programs, and its description.
-    pub(super) fn description(self) -> (String, &'static str) {
+    pub(super) fn description(self) -> (String, String) {
         let (name, description) = match (self.is_ideal, self.has_leakage) {
             (true, _) => ("ideal", "no load changes, noise, pre-sliding, leakage, offsets or lost touch reports"),
             (false, false) => (
                 "without-leakage",
-                "with load changes, noise, pre-sliding, offsets and lost touch reports; --skin no-leakage switches leakage off",
+                "with load changes, noise, pre-sliding, offsets and lost touch reports; --skin no-leakage switches leakage \
+                 off",
             ),
             (false, true) => (
                 "realistic",
-                "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them off",
+                "with load changes, noise, pre-sliding, leakage, offsets and lost touch reports; --ideal switches them \
+                 off",
             ),
         };
-        (format!("{name}{}", if self.follows_mean_square { "-mean-square" } else { "" }), description)
+        if self.follows_mean_square {
+            let description = format!("{description}; friction follows the mean square of the carrier");
+            (format!("{name}-mean-square"), description)
+        } else {
+            (name.to_owned(), description.to_owned())
+        }
     }
 }
 

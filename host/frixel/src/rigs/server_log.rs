@@ -27,7 +27,7 @@ pub(super) struct ServerLog {
     sensor: ForceSensor,
     events_csv: EventCsv,
     recorder: Recorder,
-    seen: Seen,
+    last: LastReport,
     tick_period_s: f64,
     ticks_per_flush: u64,
     frames: u32,
@@ -49,7 +49,7 @@ impl ServerLog {
             sensor: ForceSensor::new(FORCES_HZ, tick_hz),
             events_csv: EventCsv::new(events.create_live()?)?,
             recorder,
-            seen: Seen { state: State::Disarmed, is_host_silent: false },
+            last: LastReport { state: State::Disarmed, is_host_silent: false },
             tick_period_s: 1.0 / f64::from(tick_hz),
             ticks_per_flush: (FLUSH_PERIOD_S * f64::from(tick_hz)) as u64,
             frames: 0,
@@ -74,7 +74,7 @@ impl ServerLog {
         }
         let status = &record.status;
         let t_s = record.tick as f64 * self.tick_period_s;
-        for event in self.seen.changes(status.telemetry.state, status.telemetry.flags) {
+        for event in self.last.changes(status.telemetry.state, status.telemetry.flags) {
             self.note(t_s, event, None)?;
         }
         if record.tick.is_multiple_of(self.ticks_per_flush) { self.flush() } else { Ok(()) }
@@ -98,13 +98,13 @@ impl ServerLog {
     }
 }
 
-/// What the board last reported.
-struct Seen {
+/// The last report of the board.
+struct LastReport {
     state: State,
     is_host_silent: bool,
 }
 
-impl Seen {
+impl LastReport {
     /// The events between the last report and this one: the state that the board entered, and `host-silent` if its host
     /// has sent nothing for the scene's host timeout.
     fn changes(&mut self, state: State, flags: Flags) -> impl Iterator<Item = &'static str> + use<> {
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn each_change_is_one_event() {
-        let mut seen = Seen { state: State::Disarmed, is_host_silent: false };
+        let mut last = LastReport { state: State::Disarmed, is_host_silent: false };
         let silent = Flags::HOST_SILENT;
         for (state, flags, expected) in [
             (State::Disarmed, Flags::default(), &[][..]),
@@ -133,7 +133,7 @@ mod tests {
             (State::Disarmed, silent, &[]),
             (State::Armed, Flags::default(), &["armed"]),
         ] {
-            assert_eq!(seen.changes(state, flags).collect::<Vec<_>>(), expected);
+            assert_eq!(last.changes(state, flags).collect::<Vec<_>>(), expected);
         }
     }
 

@@ -15,9 +15,6 @@ pub(super) const CONVENTIONAL_STIFFNESS_PA_PER_M: f64 = 1.8e7;
 /// Voltage at which the power law states its attraction, in volts rms.
 pub(super) const REFERENCE_V_RMS: f64 = 150.0;
 
-/// Steps of the search for a coupling by its mean attraction.
-const MEAN_STEPS: usize = 12;
-
 /// The one number that friction data give about electrode, skin and gap, in `sqrt(N)/V^2`:
 /// `coupling = eps0/(2 g^2) sqrt(pi R/k)`.
 ///
@@ -40,21 +37,6 @@ impl Coupling {
         (VACUUM_PERMITTIVITY_F_PER_M / (2.0 * self.0) * shape).sqrt()
     }
 
-    /// The coupling whose mean attraction under a carrier is the attraction of this one at a constant voltage; `None` if
-    /// it is outside of the model's range.
-    ///
-    /// A fit describes measured means. A profile states the contact that has these means.
-    pub(super) fn under_carrier(self, ripple: Ripple, voltage_v_rms: f64, normal_load_n: f64) -> Option<Self> {
-        let attraction_n = |coupling: Self, ripple| {
-            let contact = coupling.contact().and_then(|contact| contact.under_load(normal_load_n)).ok()?;
-            Some(contact.under_carrier(ripple).electric_friction_n(voltage_v_rms))
-        };
-        let measured_n = attraction_n(self, Ripple::NONE)?;
-        // The attraction is nearly proportional to the coupling: each step takes nine tenths of the difference.
-        (0..MEAN_STEPS)
-            .try_fold(self, |coupling, _| Some(Self(coupling.0 * measured_n / attraction_n(coupling, ripple)?)))
-    }
-
     /// The contact of a finger of conventional radius and stiffness, and of friction coefficient 1, so that its
     /// electric friction is the attraction.
     pub(super) fn contact(self) -> Result<Contact<f64>, ParameterError> {
@@ -70,8 +52,8 @@ impl Coupling {
 /// A law of attraction with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Attraction {
-    /// Eqs. (43), (21) of the contact model.
-    Contact(Coupling),
+    /// Eqs. (43), (21) of the contact model, as the mean under a carrier with this ripple.
+    Contact(Coupling, Ripple),
     /// `attraction = reference_n (V/150 V)^voltage_exponent (F_N/reference_load_n)^load_exponent`: what the model is
     /// tested against.
     Power { reference_n: f64, voltage_exponent: f64, load_exponent: f64, reference_load_n: f64 },
@@ -82,7 +64,7 @@ impl Attraction {
     pub(super) fn voltage_exponent(&self) -> Option<f64> {
         match *self {
             Self::Power { voltage_exponent, .. } => Some(voltage_exponent),
-            Self::Contact(_) => None,
+            Self::Contact(..) => None,
         }
     }
 
@@ -90,11 +72,12 @@ impl Attraction {
     /// the parameters are outside of the model's range.
     pub(super) fn at(&self, points: impl Iterator<Item = (f64, f64)>) -> Option<Vec<f64>> {
         match *self {
-            Self::Contact(coupling) => {
+            Self::Contact(coupling, ripple) => {
                 let contact = coupling.contact().ok()?;
                 points
                     .map(|(voltage_v_rms, load_n)| {
-                        Some(contact.under_load(load_n).ok()?.electric_friction_n(voltage_v_rms))
+                        let contact = contact.under_load(load_n).ok()?.under_carrier(ripple);
+                        Some(contact.electric_friction_n(voltage_v_rms))
                     })
                     .collect()
             }
@@ -117,7 +100,7 @@ impl Attraction {
 
 #[cfg(test)]
 mod tests {
-    use super::{Attraction, Coupling};
+    use super::{Attraction, Coupling, Ripple};
 
     #[test]
     fn one_number_gives_the_attraction_under_a_dominating_load() {
@@ -125,7 +108,7 @@ mod tests {
             let shape = (core::f64::consts::PI * 8e-3 / 1.8e7_f64).sqrt();
             let coupling = Coupling(frixel_model::VACUUM_PERMITTIVITY_F_PER_M / (2.0 * gap_m * gap_m) * shape);
             assert!((coupling.gap_m() / gap_m - 1.0).abs() < 1e-12);
-            let model_n = Attraction::Contact(coupling).attraction_n(150.0, 0.5).unwrap();
+            let model_n = Attraction::Contact(coupling, Ripple::NONE).attraction_n(150.0, 0.5).unwrap();
             let again = Coupling::of_attraction(model_n, 150.0, 0.5);
             // The approximation leaves out what attracts around the contact.
             assert!((again.0 / coupling.0 - 1.0).abs() < 3e-3, "{gap_m}: {again:?} {coupling:?}");
@@ -137,7 +120,7 @@ mod tests {
         for (gap_m, electric_n) in [(10e-6, 27.8e-3), (5e-6, 129.8e-3)] {
             let shape = (core::f64::consts::PI * 8e-3 / 1.8e7_f64).sqrt();
             let coupling = Coupling(frixel_model::VACUUM_PERMITTIVITY_F_PER_M / (2.0 * gap_m * gap_m) * shape);
-            let found_n = 0.5 * Attraction::Contact(coupling).attraction_n(150.0, 0.5).unwrap();
+            let found_n = 0.5 * Attraction::Contact(coupling, Ripple::NONE).attraction_n(150.0, 0.5).unwrap();
             assert!((found_n / electric_n - 1.0_f64).abs() < 0.01, "{found_n}");
         }
     }

@@ -3,6 +3,8 @@
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, VecStorage};
 
+use frixel_model::Ripple;
+
 use super::law::{Attraction, Coupling};
 
 /// Step of the logarithm of a parameter, or of an exponent, for numerical derivatives.
@@ -32,8 +34,8 @@ pub(super) enum Measured {
 /// The model to fit, with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
-    /// Friction coefficient and coupling.
-    Contact,
+    /// Friction coefficient and coupling, under a carrier.
+    Contact(Ripple),
     /// Friction coefficient, attraction at 150 V and exponent of the voltage, with a fixed exponent of the load.
     Power { load_exponent: f64, reference_load_n: f64 },
     /// The same with a free exponent of the load.
@@ -52,7 +54,9 @@ impl Form {
     fn parameters(self, solution: &Solution) -> DVector<f64> {
         let first = libm::log(solution.friction_coefficient);
         match (self, solution.attraction) {
-            (Self::Contact, Attraction::Contact(coupling)) => DVector::from_vec(vec![first, libm::log(coupling.0)]),
+            (Self::Contact(_), Attraction::Contact(coupling, _)) => {
+                DVector::from_vec(vec![first, libm::log(coupling.0)])
+            }
             (Self::Power { .. }, Attraction::Power { reference_n, voltage_exponent, .. }) => {
                 DVector::from_vec(vec![first, libm::log(reference_n), voltage_exponent])
             }
@@ -67,7 +71,7 @@ impl Form {
     fn solution(self, parameters: &DVector<f64>) -> Option<Solution> {
         let at = |index: usize| parameters.get(index).copied();
         let attraction = match self {
-            Self::Contact => Attraction::Contact(Coupling(libm::exp(at(1)?))),
+            Self::Contact(ripple) => Attraction::Contact(Coupling(libm::exp(at(1)?)), ripple),
             Self::Power { load_exponent, reference_load_n } => Attraction::Power {
                 reference_n: libm::exp(at(1)?),
                 voltage_exponent: at(2)?,

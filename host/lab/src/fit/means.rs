@@ -145,8 +145,9 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
     let mut faults = Faults::default();
     rules::check_natural(&mut strokes, &mut faults)?;
     faults.check()?;
-    let begin = start(&strokes, &observations)?;
-    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &begin, goes_on };
+    let ripple = settings.ripple;
+    let begin = start(&strokes, &observations, ripple)?;
+    let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, ripple, start: &begin, goes_on };
     let best = search.run(&observations, &begin).ok_or(FitError::NotConverged)?;
     let mut random = RandomErrors(Pcg64::seed_from_u64(settings.seed));
     let freedoms: Vec<Option<f64>> = rows.iter().map(|row| row.count.map(|count| count - 1.0)).collect();
@@ -305,7 +306,7 @@ mod tests {
 
     fn truth_n(voltage_v_rms: f64, load_n: f64) -> f64 {
         let coupling = Coupling::of_attraction(0.26, 150.0, 0.5);
-        let law = Attraction::Contact(coupling);
+        let law = Attraction::Contact(coupling, frixel_model::Ripple::NONE);
         let attraction_n = if voltage_v_rms > 0.0 { law.attraction_n(voltage_v_rms, load_n).unwrap() } else { 0.0 };
         COEFFICIENT * (load_n + attraction_n)
     }

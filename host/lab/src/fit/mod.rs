@@ -111,6 +111,8 @@ pub struct Fit {
     /// The one number about electrode, skin and gap that friction data give, in `sqrt(N)/V^2`:
     /// `eps0/(2 g^2) sqrt(pi R/k)`.
     pub coupling_sqrt_n_per_v2: Estimate,
+    /// Ripple of the carrier of the measurement. Electric frictions are means under it.
+    pub ripple: Ripple,
     /// Voltage at which electric friction is stated, in volts rms.
     pub stated_voltage_v_rms: f64,
     /// Electric friction at the stated voltage, in newtons.
@@ -121,8 +123,7 @@ pub struct Fit {
     pub voltage_exponent: Exponent,
     /// Exponent of the load, likewise.
     pub load_exponent: Exponent,
-    /// Effective gap of coating and skin for a finger of conventional radius and stiffness, in metres. Its mean friction
-    /// under the carrier of the measurement is the fitted one at the highest voltage of the data.
+    /// Effective gap of coating and skin for a finger of conventional radius and stiffness, in metres.
     pub gap_m: f64,
     /// The part of the gap that is not coating, in metres.
     pub skin_gap_m: f64,
@@ -161,7 +162,7 @@ pub struct Point {
 impl Fit {
     /// The fitted electric friction at a voltage under the stated load, in newtons; `None` out of the model's range.
     pub fn electric_friction_at_n(&self, voltage_v_rms: f64) -> Option<f64> {
-        let attraction = Attraction::Contact(Coupling(self.coupling_sqrt_n_per_v2.value));
+        let attraction = Attraction::Contact(Coupling(self.coupling_sqrt_n_per_v2.value), self.ripple);
         Some(self.friction_coefficient.value * attraction.attraction_n(voltage_v_rms, self.data.normal_load_n)?)
     }
 }
@@ -230,8 +231,9 @@ impl FittedData {
         let normal_load_n = settings.normal_load_n.unwrap_or(load_median_n);
 
         let observations: Vec<Observation> = strokes.iter().flat_map(|stroke| &stroke.observations).copied().collect();
-        let start = start(&strokes, &observations)?;
-        let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, start: &start, goes_on };
+        let ripple = settings.ripple;
+        let start = start(&strokes, &observations, ripple)?;
+        let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, ripple, start: &start, goes_on };
         let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
         rules::check_slip(&strokes, &best.power, faults);
         rules::check_top(&strokes, voltage_range_v_rms.1)?;
@@ -280,11 +282,11 @@ fn judged(fitted_data: &FittedData, settings: &Settings) -> Result<Fit, FitError
     let voltage_exponent = judge.voltage(normal_load_n, voltage_max_v_rms)?;
     let load_exponent = judge.load(normal_load_n)?;
     let coupling = fitted.estimate(|replicate| coupling_of(&replicate.contact))?;
-    let in_profile = Coupling(coupling.value).under_carrier(settings.ripple, voltage_max_v_rms, normal_load_n);
-    let gap_m = in_profile.ok_or(FitError::NotConverged)?.gap_m();
+    let gap_m = Coupling(coupling.value).gap_m();
     let fit = Fit {
         friction_coefficient: fitted_data.friction_coefficient(|replicate| &replicate.contact)?,
         coupling_sqrt_n_per_v2: coupling,
+        ripple: settings.ripple,
         stated_voltage_v_rms: settings.voltage_v_rms,
         electric_friction_n: fitted.electric_friction_n(settings.voltage_v_rms, normal_load_n)?,
         electric_friction_most_n: fitted.electric_friction_n(voltage_max_v_rms, normal_load_n)?,

@@ -1,5 +1,6 @@
 //! Search for the laws that fit the observations best.
 
+use frixel_model::Ripple;
 use frixel_play::GoesOn;
 
 use super::contrast::StrokeMeans;
@@ -21,6 +22,8 @@ pub(super) struct Search<'s> {
     /// Operating point at which the profile gives friction.
     pub(super) voltage_v_rms: f64,
     pub(super) normal_load_n: f64,
+    /// Ripple of the carrier of the measurement.
+    pub(super) ripple: Ripple,
     pub(super) start: &'s Solution,
     pub(super) goes_on: GoesOn<'s>,
 }
@@ -33,7 +36,8 @@ impl Search<'_> {
             return None;
         }
         let weighted: Vec<_> = observations.iter().map(|observation| self.weighted(observation)).collect();
-        let contact = solve(Form::Contact, &weighted, near).or_else(|| solve(Form::Contact, &weighted, self.start))?;
+        let form = Form::Contact(self.ripple);
+        let contact = solve(form, &weighted, near).or_else(|| solve(form, &weighted, self.start))?;
         let reference_load_n = self.normal_load_n;
         let load_exponent = verdict::load_exponent_of(&contact, reference_load_n)?;
         let power = Solution {
@@ -63,7 +67,11 @@ impl Search<'_> {
 }
 
 /// Start of the search: the median friction coefficient, and the coupling at the highest voltages.
-pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Result<Solution, FitError> {
+pub(super) fn start(
+    strokes: &[StrokeMeans],
+    observations: &[Observation],
+    ripple: Ripple,
+) -> Result<Solution, FitError> {
     let friction_coefficient = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     let top_v_rms = observations.iter().map(|one| one.voltage_v_rms).fold(0.0, f64::max);
     let top = || observations.iter().filter(|one| one.voltage_v_rms > 0.9 * top_v_rms);
@@ -73,7 +81,7 @@ pub(super) fn start(strokes: &[StrokeMeans], observations: &[Observation]) -> Re
     }
     let load_n = median(top().map(|one| one.normal_load_n));
     let coupling = Coupling::of_attraction(attraction_n, top_v_rms, load_n);
-    Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling) })
+    Ok(Solution { friction_coefficient, attraction: Attraction::Contact(coupling, ripple) })
 }
 
 /// The error for a voltage without electric friction; `found_n` is the electric friction at the highest voltage.
@@ -94,7 +102,7 @@ pub(super) fn attraction_of(observation: &Observation, friction_coefficient: f64
 
 pub(super) fn coupling_of(solution: &Solution) -> Option<f64> {
     match solution.attraction {
-        Attraction::Contact(coupling) => Some(coupling.0),
+        Attraction::Contact(coupling, _) => Some(coupling.0),
         Attraction::Power { .. } => None,
     }
 }

@@ -92,7 +92,7 @@ impl Judge<'_> {
         let form = Form::PowerOfLoad { reference_load_n };
         let load_exponent = |solution: &Solution| match solution.attraction {
             Attraction::Power { load_exponent, .. } => Some(load_exponent),
-            Attraction::Contact(_) => None,
+            Attraction::Contact(..) => None,
         };
         let of = |replicate: &Replicate| replicate.power_of_load.as_ref().and_then(load_exponent);
         let unknown = || {
@@ -129,9 +129,10 @@ impl Judge<'_> {
         // The model's exponent for these data, as a function of the coupling.
         let modelled = |factor: f64| -> Option<f64> {
             let coupling = Coupling(coupling_of(&self.fitted.best.contact)? * factor);
-            let solution = Solution { attraction: Attraction::Contact(coupling), ..self.fitted.best.contact };
+            let Attraction::Contact(_, ripple) = self.fitted.best.contact.attraction else { return None };
+            let solution = Solution { attraction: Attraction::Contact(coupling, ripple), ..self.fitted.best.contact };
             let start = match form {
-                Form::Contact => return None,
+                Form::Contact(_) => return None,
                 Form::Power { .. } => &self.fitted.best.power,
                 Form::PowerOfLoad { .. } => self.fitted.best.power_of_load.as_ref()?,
             };

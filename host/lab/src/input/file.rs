@@ -10,9 +10,7 @@ use std::path::Path;
 use frixel_scene::FileKind;
 
 use super::{Bounded, InputError, PICTURE_MAX_BYTES, TOML_MAX_BYTES};
-
-/// Number of first bytes of a file that tell its kind.
-const HEAD_BYTES: u64 = 4096;
+use crate::table::HEAD_BYTES;
 
 /// Opens a regular file of at most `max_bytes` bytes. Reading beyond them is an error.
 pub fn open(path: &Path, max_bytes: u64) -> io::Result<Bounded<File>> {
@@ -40,14 +38,14 @@ pub fn read(path: &Path, max_bytes: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a file of TOML text. A larger file of another kind, such as a photograph, is read in part: its reader names
-/// the kind.
+/// Reads a file of TOML text. Of a larger file of another format, such as a photograph, returns the first bytes, by
+/// which its reader names the kind.
 pub fn read_toml(path: &Path) -> io::Result<Vec<u8>> {
     let whole = read(path, TOML_MAX_BYTES);
     if whole.is_err() {
         let mut head = Vec::new();
         open(path, u64::MAX)?.take(HEAD_BYTES).read_to_end(&mut head)?;
-        if FileKind::of(&head).is_some() {
+        if FileKind::of(&head).is_some_and(|kind| !kind.is_toml()) {
             return Ok(head);
         }
     }
@@ -106,6 +104,9 @@ mod tests {
             let error = read_named(&path).unwrap_err().to_string();
             assert_eq!(error, format!("it has {} bytes, and at most {limit} are read", limit + 1));
         }
+        let path = folder.path().join("large.toml");
+        fs::write(&path, format!("version = 1\n#{}\n", "#".repeat(TOML_MAX_BYTES as usize))).unwrap();
+        assert!(read_toml(&path).unwrap_err().to_string().ends_with(&format!("at most {TOML_MAX_BYTES} are read")));
     }
 
     #[cfg(unix)]

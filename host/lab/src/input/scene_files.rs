@@ -59,7 +59,7 @@ fn files_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Files of a scene that keep the bytes of each file that the scene names, for a play without these files.
+/// The files that a scene names, with the bytes of each one that was read. A play from these bytes needs no folder.
 #[derive(Debug)]
 pub struct KeptFiles {
     folder: Option<SceneFolder>,

@@ -28,11 +28,13 @@
 //! separators and the decimal sign of the input; answers are in the units of their names, whatever the input has.
 //!
 //! `status` is `ok`, `no-contact` (radius and friction are zero), `below-natural` (the friction is less than at zero
-//! voltage, possibly negative), `unstable`, `wider-than-finger` or `invalid: REASON` with empty cells. At
-//! `wider-than-finger`, the contact's radius exceeds the finger's radius of curvature, where the model is not valid; the
-//! cells are empty if it passes the outer radius. An invalid row does not stop the others. The file as a whole is rejected ([`CsvError`]) when its header lacks a column that every row needs, or
-//! repeats a column that the model reads. A missing column that only some variants need makes the rows of those
-//! variants invalid.
+//! voltage, possibly negative), `unstable`, `wider-than-finger`, or `invalid: REASON` with empty cells. A contact is
+//! `wider-than-finger` if its radius exceeds the finger's radius of curvature, where the model is not valid. Its cells
+//! are empty if it passes the outer radius.
+//!
+//! An invalid row does not stop the others. The file as a whole is rejected ([`CsvError`]) when its header lacks a
+//! column that every row needs, or repeats a column that the model reads. A missing column that only some variants
+//! need makes the rows of those variants invalid.
 
 mod columns;
 mod error;

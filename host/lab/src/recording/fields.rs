@@ -132,7 +132,7 @@ enum Source {
     Text(fn(&FeltRow) -> Option<String>),
 }
 
-/// The column that `felt.csv` has besides, of a person's play.
+/// Column that `felt.csv` adds for a person's play.
 pub(super) const PARTICIPANT: &str = "participant";
 /// Name, unit, meaning and source of each column of a play.
 const PLAY: [(&str, &str, &str, Source); 12] = [

@@ -98,7 +98,7 @@ impl Sweep {
         &self.index
     }
 
-    /// The subject of a cell's error: where the plan has the parameter to blame, the scene, and the values.
+    /// Subject of a cell's error: the plan's line of the parameter to blame, if one is, then scene and values.
     pub fn blame(&self, cell: &Cell, error: &CellError) -> String {
         match cell.blamed(error) {
             Some(path) => format!("{}: {}", self.places.of_parameter(path), cell.titled(|other| other == path)),

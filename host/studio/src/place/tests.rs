@@ -1,5 +1,5 @@
-//! The place of every layer of the gallery: as the text has it, it is the compiler's, before and after a hand has changed
-//! the text.
+//! The place of every layer of the gallery, as read from the text, is the compiler's: before and after the layer is
+//! moved or resized.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -35,7 +35,8 @@ const MORE: [&str; 4] = [
 const INCLUDED: [(&str, &str); 2] = [
     (
         "parts/b.toml",
-        "version = 1\ninclude = [\"../c.toml\"]\n[design]\nwidth_px = 1200\nheight_px = 400\n[defaults]\nx_px = 600\ny_px = 200\n",
+        "version = 1\ninclude = [\"../c.toml\"]\n[design]\nwidth_px = 1200\nheight_px = 400\n\
+         [defaults]\nx_px = 600\ny_px = 200\n",
     ),
     (
         "c.toml",
@@ -58,7 +59,7 @@ fn compiled(files: &BTreeMap<String, Vec<u8>>, text: &str) -> Value {
     crate::compile(&Request { entry: "a.toml".to_owned(), files, ..Request::default() })
 }
 
-/// A value as the page writes it.
+/// A value as `valueText` of `toml_text.js` writes it, apart from the order of fields.
 fn written(value: &Value, decimals: usize) -> String {
     match value {
         Value::Number(number) => {

@@ -87,15 +87,15 @@ export class NumberRow {
   }
 
   /**
-   * The slider is at this value: rounded, but not beyond its ends.
+   * The slider is at this value: rounded, but not beyond its ends, and at an end as close to it as the text can say.
    * @param {number} value
    * @param {number} places
    */
   #change(value, places) {
     const { least, most } = this.#number;
     const rounded = Number(clamp(value, least, most).toFixed(places));
-    const isBeyond = rounded < least || rounded > most;
-    this.onValue(isBeyond ? inwards(value, this.#number) : rounded);
+    const isAtEnd = value <= least || value >= most || rounded < least || rounded > most;
+    this.onValue(isAtEnd ? inwards(value, this.#number) : rounded);
   }
 
   get #text() {

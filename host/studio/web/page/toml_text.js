@@ -199,12 +199,12 @@ export function numberText(value, decimals) {
   return text === "-0" ? "0" : text;
 }
 
-/** Fields of a region in the order in which they are written, before all others. */
-const FIRST_FIELDS = ["shape", "x_mm", "y_mm", "width_mm", "height_mm"];
+/** Fields of a region in the order in which they are written, in either unit, before all others. */
+const FIRST_FIELDS = ["shape", "x", "y", "width", "height"];
 
 /** @param {string} key */
 function rank(key) {
-  const at = FIRST_FIELDS.indexOf(key);
+  const at = FIRST_FIELDS.indexOf(key.replace(/_(mm|px)$/, ""));
   return at < 0 ? FIRST_FIELDS.length : at;
 }
 

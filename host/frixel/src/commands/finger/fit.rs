@@ -22,6 +22,8 @@ use crate::commands::terminal::{note_understood, print_line, say};
 
 /// Voltage at which electric friction is stated if none is given, in volts rms.
 const STATED_V_RMS: f64 = 150.0;
+/// Carrier frequency of a calibration, in Hz.
+const CARRIER_HZ: f64 = 1e3;
 
 #[derive(Debug, Args)]
 pub(in crate::commands) struct FitArgs {
@@ -53,10 +55,11 @@ pub(in crate::commands) struct FitArgs {
     /// Normal load of the profile, in newtons. Default: the median of the data.
     #[arg(long, value_name = "N", value_parser = positive)]
     load: Option<f64>,
-    /// Carrier frequency of the measurement, in Hz: 125 to 5000. Default: 1000, as of `frixel finger calibrate`.
-    #[arg(long, value_name = "HZ", default_value_t = 1e3, hide_default_value = true, value_parser = carrier_hz)]
-    carrier_hz: f64,
-    /// The carrier of the measurement was a sine. Default: a square wave.
+    /// Carrier frequency of the measurement, in Hz: 125 to 5000, with edges of 20 us. Default: 1000, as of `frixel finger
+    /// calibrate`. For the contact model only.
+    #[arg(long, value_name = "HZ", value_parser = carrier_hz)]
+    carrier_hz: Option<f64>,
+    /// The carrier of the measurement was a sine. Default: a square wave. For the contact model only.
     #[arg(long)]
     sine: bool,
     /// Strokes to leave out, by their names in the column `stroke`.
@@ -125,13 +128,19 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
              voltage of the data: leave --voltage out"
         );
     }
+    if args.law == Law::Empirical && (args.carrier_hz.is_some() || args.sine) {
+        bail!(
+            "--carrier-hz and --sine correct the contact model, and an empirical law is not corrected: it holds under \
+             the carrier of its measurement; leave them out"
+        );
+    }
     let (screen_name, screen) = screen(args.screen.as_deref())?;
     let outputs = args.output.as_deref().map(|output| Outputs::new(args, path, output)).transpose()?;
     let settings = Settings {
         voltage_v_rms: args.voltage.unwrap_or(STATED_V_RMS),
         normal_load_n: args.load,
         coating_gap_m: screen.coating_gap_m(),
-        ripple: fit::measured_ripple(if args.sine { Waveform::Sine } else { Waveform::Square }, args.carrier_hz),
+        ripple: fit::measured_ripple(if args.sine { Waveform::Sine } else { Waveform::Square }, args.carrier_hz()),
         without: args.without.clone(),
         seed: args.seed,
     };
@@ -152,6 +161,12 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
         Some(outputs) if args.json => say(&outputs.profile, text),
         Some(outputs) => say(&outputs.profile, format_args!("{text}\n  {:<22} {}", "wrote", outputs.names(args.law))),
         None => print_line(text),
+    }
+}
+
+impl FitArgs {
+    fn carrier_hz(&self) -> f64 {
+        self.carrier_hz.unwrap_or(CARRIER_HZ)
     }
 }
 
@@ -192,8 +207,10 @@ impl Outputs {
         let simulated = if fit.data().preparation.is_simulated { "simulated " } else { "" };
         let method = args.method.clone().unwrap_or_else(|| {
             let waveform = if args.sine { "sine" } else { "square" };
-            let carrier = format!("a {waveform} carrier of {} Hz", args.carrier_hz);
-            format!("{simulated}{} under {carrier}", method_of(fit.data().division))
+            let is_stated = args.sine || args.carrier_hz.is_some();
+            let stated = format!(" under a {waveform} carrier of {} Hz", args.carrier_hz());
+            let carrier = if is_stated { &stated } else { "" };
+            format!("{simulated}{}{carrier}", method_of(fit.data().division))
         });
         let date = Utc::now().date_naive().to_string();
         let experiment = Experiment { date, method, screen: screen.to_owned() };
