@@ -94,7 +94,9 @@ export class NumberRow {
   #change(value, places) {
     const { least, most } = this.#number;
     const rounded = Number(clamp(value, least, most).toFixed(places));
-    const isAtEnd = value <= least || value >= most || rounded < least || rounded > most;
+    // The browser keeps 15 digits of an end.
+    const close = CLOSE * (most - least);
+    const isAtEnd = value < least + close || value > most - close || rounded < least || rounded > most;
     this.onValue(isAtEnd ? inwards(value, this.#number) : rounded);
   }
 
