@@ -63,8 +63,8 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
         return _frixel.sweep_cells(text.encode(), "<plan>", "", sources)
     path = checked_path("plan", plan)
-    text = read_bytes(path, "this plan", ParameterError, is_toml=True)
-    return _frixel.sweep_cells(text, name_of(path), str(path.parent), {})
+    content = read_bytes(path, "this plan", ParameterError, is_toml=True)
+    return _frixel.sweep_cells(content, name_of(path), str(path.parent), {})
 
 
 def play(cell: str) -> str:
