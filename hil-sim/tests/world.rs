@@ -41,8 +41,8 @@ fn sine(tick: u64, dac_code: i16) -> Drive {
     Drive { dac_code, amplifier_enable: true }
 }
 
-/// A sine raises the mean friction of a finger that follows each tick, and not that of one that follows the mean square,
-/// as a measured law does.
+/// A sine raises the mean friction of a finger that follows each tick. It does not raise that of a finger that follows
+/// the mean square, as a measured law does.
 #[test]
 fn a_sine_is_felt_as_its_rms_voltage_by_a_finger_that_follows_the_mean_square() {
     let contact = example_finger().unwrap();

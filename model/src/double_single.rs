@@ -130,6 +130,11 @@ impl DoubleSingle {
     }
 }
 
+/// Square root of an `f32`, by that of [`DoubleSingle`], which a board needs anyway: that of `libm` takes 500 bytes more.
+pub(crate) fn square_root(square: f32) -> f32 {
+    DoubleSingle::from(square).sqrt().to_f32()
+}
+
 /// `a + b` exactly, when `a` is the larger one.
 fn fast_two_sum(a: f32, b: f32) -> DoubleSingle {
     let high = a + b;

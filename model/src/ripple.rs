@@ -3,7 +3,7 @@
 use core::f32::consts::FRAC_PI_2;
 
 use crate::carrier::tangent_deficit;
-use crate::double_single::DoubleSingle;
+use crate::double_single::{DoubleSingle, square_root};
 use crate::{Carrier, Real, Waveform};
 
 /// Number of levels of a ripple.
@@ -48,7 +48,7 @@ impl Moments {
     fn mean_and_deviation(&self) -> (f32, f32) {
         let count = self.count.max(1.0);
         let mean = self.sum / count;
-        (mean, root((self.squares / count - mean * mean).max(0.0)))
+        (mean, square_root((self.squares / count - mean * mean).max(0.0)))
     }
 }
 
@@ -56,11 +56,6 @@ impl Moments {
 fn deficit(r: f32) -> f32 {
     let r = DoubleSingle::from(r);
     tangent_deficit(r, r * r).to_f32()
-}
-
-/// Square root.
-fn root(square: f32) -> f32 {
-    DoubleSingle::from(square).sqrt().to_f32()
 }
 
 /// Mean square in some ticks of a period.
@@ -172,5 +167,5 @@ fn held_sine_depth(lags: f32, half_period_ticks: f32) -> f32 {
     let mean_square = (h_squared + t_squared * kept) / sum;
     let swing = rho * h_squared / (sum * sum);
     let (real, imaginary) = (kept + swing * (h_squared - t_squared), swing * 2.0 * t * h);
-    (root(real * real + imaginary * imaginary) / mean_square).min(1.0)
+    (square_root(real * real + imaginary * imaginary) / mean_square).min(1.0)
 }

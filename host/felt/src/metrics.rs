@@ -179,7 +179,7 @@ struct Spread {
 impl Spread {
     fn add(&mut self, value: f64) {
         self.count += 1;
-        // Not `max`, which takes twice as long because of NaN.
+        // Not `max`, which also handles NaN.
         if value.abs() > self.max {
             self.max = value.abs();
         }

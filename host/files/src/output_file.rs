@@ -154,8 +154,8 @@ impl OutputFile {
         self.create()?.live()
     }
 
-    /// Opens a file of lines for appending, and calls `each` with every line in it. Waits while another process appends,
-    /// after one call of `waits`. Removes the partial last line that a killed process left.
+    /// Opens a file of lines for appending, and calls `each` with every line in it. Waits while another process
+    /// appends, after one call of `waits`. Removes the partial last line that a killed process left.
     pub fn append(&self, each: impl FnMut(&[u8]), waits: impl FnOnce()) -> Result<FileWriter, Error> {
         let Some(file) = &self.file else { return self.create() };
         let mut lines = when_free(|| NewFile::open(&self.path, file, file), waits)?;

@@ -363,7 +363,7 @@ fn rows_stream_through() {
     assert!(input.sent < 1_000_000, "{} bytes read for 1,000,000 written", input.sent);
 }
 
-/// No answer is other than a number, and every row has its status. `columns` are those that no answer replaces.
+/// Every answer is a number, and every row has its status. `columns` are the input columns that stay.
 fn check_output(output: &[u8], columns: usize, answers: usize, summary: &Summary) {
     let mut reader = csv::ReaderBuilder::new().has_headers(true).flexible(true).from_reader(output);
     assert_eq!(reader.byte_headers().unwrap().len(), columns + answers + 1);

@@ -22,8 +22,8 @@ pub(crate) fn raised_by_signal() -> Option<PyErr> {
 /// Values between two checks of Python's signals, which take at most a tenth of a second.
 const CHUNK: usize = 4096;
 
-/// Maps values until one fails or a signal is pending. Unlike [`interruptible`], starts no thread, which would cost more
-/// than a few values.
+/// Maps values until one fails or a signal is pending. Unlike [`interruptible`], starts no thread, which would cost
+/// more than a few values.
 pub(crate) fn mapped<T: Sync, U: Send, E: Send>(
     py: Python<'_>,
     values: &[T],

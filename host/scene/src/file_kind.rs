@@ -10,8 +10,9 @@ use super::mistake::FileMistake;
 use super::picture::is_picture;
 use super::source::Source;
 
-/// First bytes of a Parquet file, and of a zip.
-const PARQUET: &[u8] = b"PAR1";
+/// First and last bytes of a Parquet file.
+pub const PARQUET: &[u8; 4] = b"PAR1";
+/// First bytes of a zip.
 const ZIP: &[u8] = b"PK\x03\x04";
 /// Tables that only scenes have.
 const OF_SCENES: [&str; 8] = ["layer", "defaults", "drive", "carrier", "touch", "design", "finger", "screen"];
@@ -148,7 +149,7 @@ impl FileKind {
         if self == Self::Finger { "finger profile" } else { self.word() }
     }
 
-    /// What the file describes.
+    /// The kind as a noun.
     pub fn word(self) -> &'static str {
         match self {
             Self::Scene => "scene",

@@ -89,7 +89,7 @@ pub use compile_error::CompileError;
 pub use diagnostic::{Diagnostic, DiagnosticKind};
 pub use fields::has_unit;
 pub use file::Scene;
-pub use file_kind::{FileKind, WrongKind};
+pub use file_kind::{FileKind, PARQUET, WrongKind};
 pub use files::{FileUnavailable, Files, SharedFile, SharedFiles};
 pub use finger::{Elasticity, Evidence, Experiment, FingerProfile, MeasuredLaw, Origin};
 pub use grammar::stem;

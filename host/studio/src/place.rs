@@ -32,7 +32,7 @@ struct Placed {
     /// Left, top, width and height around all copies, mm; `None` for the whole screen.
     box_mm: Option<[f64; 4]>,
     screen: Screen,
-    /// What a hand does to it.
+    /// The change by hand.
     act: Option<Act>,
 }
 
@@ -45,7 +45,7 @@ struct Screen {
     pixel_mm: Option<[f64; 2]>,
 }
 
-/// What a hand does to a layer.
+/// A change of a layer by hand.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 enum Act {

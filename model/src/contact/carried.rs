@@ -1,7 +1,7 @@
 //! The contact under a carrier: friction averaged over a carrier period.
 
 use super::LoadedContact;
-use crate::double_single::DoubleSingle;
+use crate::double_single::{DoubleSingle, square_root};
 use crate::{ParameterError, Real, Ripple};
 
 /// Most steps of Newton's method in the inverse. Each squares the error; `f32` needs at most four, and `f64` five.
@@ -9,8 +9,8 @@ const STEPS_MAX: usize = 6;
 
 /// A contact under a carrier: its electric friction is the mean over a carrier period.
 ///
-/// Assumes that the friction of every tick is that of the [`LoadedContact`] at the tick's mean squared voltage. Created by
-/// [`LoadedContact::under_carrier`]. With [`Ripple::NONE`] it has the friction of the contact.
+/// Assumes that the friction of every tick is that of the [`LoadedContact`] at the tick's mean squared voltage. Created
+/// by [`LoadedContact::under_carrier`]. With [`Ripple::NONE`] it has the friction of the contact.
 ///
 /// In f64, forward and inverse agree within 1e-13 of the friction, while `(V/V*)^4` is representable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,9 +76,8 @@ impl Correction for f64 {
 }
 
 impl Correction for f32 {
-    /// By the root of [`DoubleSingle`], which a board needs anyway; that of `libm` takes 500 bytes more.
     fn root(self) -> Self {
-        DoubleSingle::from(self).sqrt().to_f32()
+        square_root(self)
     }
 }
 

@@ -48,8 +48,8 @@ pub struct InverseTable {
 
 impl InverseTable {
     /// Bound on the relative error in electric friction, proven for every finger, coating and load of zero or more
-    /// (9.9e-6, from `reference/table_constants.py`). Under a ripple it is not proven, but holds for every carrier, finger
-    /// and load of `tests/carried.rs`.
+    /// (9.9e-6, from `reference/table_constants.py`). Under a ripple it is not proven, but holds for every carrier,
+    /// finger and load of `tests/carried.rs`.
     ///
     /// It holds from the friction at 1 V, or at 1/200 of the largest voltage if that is lower, to the friction at the
     /// largest voltage. For the example finger between 1 V and 200 V, the largest error over every `f32` is 3.6e-6

@@ -33,7 +33,7 @@ use super::argument::RARE;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::{StrokeArgs, of_stroke_options};
-use super::target::{self, Target};
+use super::target::Target;
 use super::terminal::{self, note, note_refusals, print_line};
 use super::{argument, waiting};
 use live_scene::LiveScene;

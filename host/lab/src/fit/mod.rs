@@ -96,7 +96,8 @@ pub struct Settings {
 /// Lowest and highest carrier frequency of a measurement, in Hz.
 pub const CARRIERS_HZ: [f64; 2] = [125.0, 5e3];
 
-/// Ripple of the carrier of a measurement, of a frequency within [`CARRIERS_HZ`], with the edges of the reference board.
+/// Ripple of the carrier of a measurement, with a frequency within [`CARRIERS_HZ`] and the edges of the reference
+/// board.
 pub fn measured_ripple(waveform: Waveform, carrier_hz: f64) -> Ripple {
     let Board { tick_hz, limits, .. } = &Board::SIMULATOR;
     let half_period_ticks = (0.5 * f64::from(*tick_hz) / carrier_hz).round() as u32;

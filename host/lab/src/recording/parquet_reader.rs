@@ -18,8 +18,8 @@ use super::parquet_writer::{
 };
 use super::{Column, Field, Kind, Metadata, Recording, RecordingError, Values, claims, seal};
 
-/// First and last bytes of a Parquet file.
-pub const MAGIC: &[u8; 4] = b"PAR1";
+pub use frixel_scene::PARQUET as MAGIC;
+
 /// Bytes of a footer's length and of the last bytes behind it.
 const TAIL_BYTES: usize = 8;
 /// Most ends of a footer, from the last on, that are tried where the end is missing. In one that was cut off the first

@@ -114,7 +114,7 @@ fn assert_near(found: Option<[f64; 4]>, expected: Option<[f64; 4]>, about: &str)
     assert!(is_same, "{about}: {found:?}, expected {expected:?}");
 }
 
-/// What the compiler says of a layer and of the others once a text has changed.
+/// The compiler's boxes of a layer and of the others after a change of the text.
 fn assert_changed(
     files: &BTreeMap<String, Vec<u8>>,
     (before, text): (&Value, &str),

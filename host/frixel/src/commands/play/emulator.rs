@@ -9,11 +9,11 @@ use frixel_hil_sim::{Board, RigConfig};
 use frixel_play::RigStream;
 use frixel_scene::Scene;
 
+use super::Target;
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
 use super::plan::Plan;
-use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
 /// Plays on the board of `target` in an emulator, under a simulated finger.

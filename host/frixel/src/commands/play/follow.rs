@@ -14,13 +14,13 @@ use frixel_lab::recording::{check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
+use super::Target;
 use super::control::Control;
 use super::live_scene::{LiveScene, ReplaceOutcome};
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
 use super::recorded::metadata;
-use super::target::Target;
 use super::{Interrupt, PlayArgs, Played, note, waiting};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.

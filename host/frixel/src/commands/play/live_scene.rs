@@ -12,9 +12,9 @@ use frixel_play::{PlayError, Player, Replaced};
 use frixel_scene::Program;
 use frixel_wire::hello::BoardLimits;
 
+use super::Target;
 use super::outputs::PlayFiles;
 use super::plan::print_notes;
-use super::target::Target;
 use super::{PlayArgs, note, note_refusals};
 
 /// Loads and compiles scenes while one plays.

@@ -12,9 +12,9 @@ use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::error::cut_off;
 use super::PlayArgs;
+use super::Target;
 use super::record_file::{self, RecordFile};
 use super::recorded::Sources;
-use super::target::Target;
 use super::with_log::{LayeredRow, LogJoin};
 
 /// The option that names the folder.

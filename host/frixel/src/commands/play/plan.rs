@@ -14,7 +14,7 @@ use frixel_wire::hello::BoardLimits;
 use frixel_wire::message::TELEMETRY_MAX_HZ;
 
 use super::super::stroke::{from_file, note_off_screen};
-use super::target::Target;
+use super::Target;
 use super::{PlayArgs, note, note_refusals};
 
 /// Highest rate of telemetry that the emulated serial port can transfer, in messages a second.

@@ -7,13 +7,13 @@ use frixel_play::{RigStream, check_measured};
 use frixel_scene::Scene;
 
 use super::super::port;
+use super::Target;
 #[cfg(unix)]
 pub(super) use super::emulator::play_on_emulator;
 use super::follow::follow;
 use super::live_scene::LiveScene;
 use super::outputs::PlayFiles;
 use super::plan::Plan;
-use super::target::Target;
 use super::{Interrupt, PlayArgs, Played};
 
 /// A simulated board under a simulated finger.

@@ -11,7 +11,7 @@ use crate::stream;
 
 use super::super::argument::RARE;
 use super::super::terminal::note;
-use super::target::Target;
+use super::Target;
 
 /// The name of standard input.
 const STANDARD_INPUT: &str = "-";

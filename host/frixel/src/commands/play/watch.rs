@@ -5,9 +5,9 @@ use std::thread::sleep;
 
 use crate::scene_file::{CHECK_PERIOD, SceneFiles};
 
+use super::Target;
 use super::outputs::PlayFiles;
 use super::rigs;
-use super::target::Target;
 use super::{Interrupt, PlayArgs, finish, note};
 
 /// Plays the scene, and plays it again whenever its file, or a file that it names, was saved, until Ctrl-C.
