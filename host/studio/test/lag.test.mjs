@@ -117,7 +117,7 @@ test("the switch slides the same stroke again without prediction, which is felt 
   context.diagnostic(`felt is off by ${before.toFixed(2)} of the reference's swing with prediction, ${late.toFixed(2)} without`);
   assert.ok(late > 1.4 * before && before < ERROR_MAX, `${late}, ${before}`);
   const shown = await said(page);
-  assert.ok(shown.predicted < 0.6 && shown.reported > 1, `both are known of each stroke: ${JSON.stringify(shown)}`);
+  assert.ok(shown.predicted < 0.6 && shown.reported > LATE_MM, `both are known of each stroke: ${JSON.stringify(shown)}`);
   const back = nextStroke(page);
   await page.locator("#prediction").check();
   assert.ok(errorOf(await back) < late / 1.4, "and with it again");
