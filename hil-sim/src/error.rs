@@ -23,8 +23,8 @@ pub enum WorldError {
     /// A number of the configuration is out of range.
     #[error("simulated world: {0}")]
     OutOfRange(#[from] OutOfRange),
-    /// The contact model rejects the example finger.
-    #[error("simulated world: the contact model refuses the example finger: {0:?}")]
+    /// The contact model refuses the example finger.
+    #[error("simulated world: the contact model refuses the example finger: {0}")]
     Finger(ParameterError),
 }
 

@@ -37,7 +37,7 @@ impl Hardware for Nucleo {
 }
 
 /// Ticks a second.
-pub const TICK_HZ: u32 = 40_000;
+pub const TICK_HZ: u32 = Board::NUCLEO_G474RE.tick_hz;
 /// Limits until bring-up has stored others.
 pub const LIMITS: BoardLimits =
     BoardLimits { receive_window_bytes: RECEIVE_WINDOW as u16, ..limits_behind(option_env!("FRIXEL_SERIES_KOHM")) };

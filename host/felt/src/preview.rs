@@ -157,9 +157,8 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
         (ReachSide::Above, "Hatched black", "more than can be reached, and is clamped"),
         (ReachSide::Below, "Hatched white", "less than without voltage, and is clamped"),
     ] {
-        let percent = percent(parts_of_reach, side);
-        if percent > 0.0 {
-            sentences.push(format!("{hatch}: {:.1} % of the map asks for {what}.", percent.max(0.1)));
+        if parts_of_reach.iter().any(|part| ReachSide::of(*part) == side) {
+            sentences.push(format!("{hatch}: {what}."));
         }
     }
     sentences
@@ -182,12 +181,6 @@ fn has_click(layer: &Layer) -> bool {
         Layer::Edge(Edge { click, .. }) | Layer::Button(Button { click, .. }) => click.height_n.abs() > 0.0,
         _ => false,
     }
-}
-
-/// Percentage of the map on one side of the reach.
-fn percent(parts_of_reach: &[f64], wanted: ReachSide) -> f64 {
-    let found = parts_of_reach.iter().filter(|part| ReachSide::of(**part) == wanted).count();
-    100.0 * found as f64 / parts_of_reach.len().max(1) as f64
 }
 
 /// At most four significant digits.

@@ -22,7 +22,7 @@ pub struct Reach {
 /// The reason why a board cannot play a finger on a coating.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub(super) enum ReachError {
-    #[error("the contact model refuses it: {0:?}")]
+    #[error("the contact model refuses the finger: {0}")]
     Contact(ParameterError),
     #[error("the contact would be {contact_m} m wide")]
     TooWide { contact_m: f64 },

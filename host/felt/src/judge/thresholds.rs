@@ -1,7 +1,7 @@
 //! Thresholds of touch, with their sources. "Quoted from memory" marks a value to check before use;
 //! `docs/inside/evidence.md` lists all of them.
 
-use frixel_hil_sim::RELAXATION_LENGTH_M;
+use frixel_hil_sim::{FingertipConfig, RELAXATION_LENGTH_M};
 use serde::{Deserialize, Serialize};
 
 /// Weber fraction of friction: the smallest perceptible change of the total friction, for a transient decrease
@@ -20,7 +20,7 @@ pub(crate) const VOLTAGE_DIFFERENCE_DB: f64 = 1.21;
 /// Root mean square of a finger's own friction noise from 10 to 1,000 Hz, N. Its spectral density falls as 1/f, so
 /// each octave has the same share. Computed from one trial of one bare finger at 0.53 N and 40 mm/s
 /// (romangrigorii/data-driven-playback).
-pub const NATURAL_NOISE_RMS_N: f64 = 4.5e-3;
+pub const NATURAL_NOISE_RMS_N: f64 = FingertipConfig::REALISTIC.noise_rms_n;
 /// Band of [`NATURAL_NOISE_RMS_N`], Hz.
 const NOISE_BAND_HZ: (f64, f64) = (10.0, 1000.0);
 

@@ -17,7 +17,7 @@ use crate::input;
 /// The results of a run; the field names are the keys of `--json`. Unknown values are `null` there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Report {
-    /// The rig that played the scene: `sim`, `qemu` or `board`.
+    /// The rig that played the scene: `sim`, `qemu`, `pico` or `board`.
     pub rig: String,
     /// Whether the scene is a draft, which a board refuses.
     pub draft: bool,
@@ -51,7 +51,7 @@ pub(crate) struct Report {
     pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Origin of the finger's numbers: `assumed`, `perceptual` or `measured`.
+    /// Origin of the finger's numbers: `assumed`, `perceptual`, `empirical` or `measured`.
     pub finger_origin: &'static str,
     /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,

@@ -37,7 +37,7 @@ const NUMBER: Column = Column::new("n", "");
 const MEANS_MIN: usize = 3;
 
 /// Standard errors of a measured force, in newtons: squares of others leave the range of numbers.
-const ERRORS_N: core::ops::RangeInclusive<f64> = 1e-9..=50.0;
+const ERRORS_N: core::ops::RangeInclusive<f64> = 1e-9..=rules::FORCE_MAX_N;
 
 /// Mean friction at one voltage and load.
 #[derive(Clone, Debug, PartialEq)]

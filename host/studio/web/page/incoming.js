@@ -11,11 +11,6 @@ import { TEXT_MAX_BYTES, isPicture, isToml, sameName, tooLarge } from "./project
 /** @import { NamedFile, SavedScene } from "./project.js" */
 /** @typedef {{ name: string, text: string }} OwnProfile */
 
-/**
- * Largest text, picture and zip, bytes.
- * @type {Record<string, number>}
- */
-const MAX_BYTES = { toml: TEXT_MAX_BYTES, png: 8_000_000, jpg: 8_000_000, jpeg: 8_000_000, zip: UNPACKED_MAX_BYTES };
 
 /**
  * What stands in files that a person gives: texts that are not sorted yet, and the other files.
@@ -145,7 +140,8 @@ export class Incoming {
 export async function contentOf(file) {
   const ending = /\.(toml|png|jpe?g|zip)$/i.exec(file.name)?.[1].toLowerCase();
   if (!ending) throw new Error("expected a scene or profile (.toml), a picture (.png, .jpg) or a saved project (.zip)");
-  if (file.size > MAX_BYTES[ending]) throw new Error(tooLarge("file", file.size, MAX_BYTES[ending]));
+  const maxBytes = ending === "toml" ? TEXT_MAX_BYTES : UNPACKED_MAX_BYTES;
+  if (file.size > maxBytes) throw new Error(tooLarge("file", file.size, maxBytes));
   return new Uint8Array(await file.arrayBuffer());
 }
 

@@ -279,13 +279,8 @@ struct Behind {
 impl Behind {
     fn new(board: &Board, series_ohm: f64, carrier_hz: f64, voltage_v_rms: f64) -> Self {
         let edge_time_constant_s = board.behind(series_ohm as f32).limits.edge_time_constant_s;
-        let half_period_s = 0.5 / carrier_hz;
-        let carrier = Carrier {
-            waveform: Waveform::Square,
-            half_period_s: half_period_s as f32,
-            half_period_ticks: (half_period_s * f64::from(board.tick_hz)).round() as u32,
-            edge_time_constant_s,
-        };
+        let half_period_ticks = (0.5 * f64::from(board.tick_hz) / carrier_hz).round() as u32;
+        let carrier = Carrier::new(Waveform::Square, half_period_ticks, board.tick_hz, edge_time_constant_s);
         let peak_per_rms = f64::from(carrier.peak_per_rms());
         Self {
             series_ohm,
