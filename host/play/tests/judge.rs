@@ -174,6 +174,9 @@ fn advice_that_is_followed_ends_in_felt() {
     let faint = "[[layer]]\nkind = \"constant\"\nfriction_fraction = FRACTION\n\
                  region = { x_mm = 40, y_mm = 20, width_mm = 30, height_mm = 30 }\n";
     let edge = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 0.3\nridge_fraction = 0.9\n";
+    let ridge_over_stripes = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 1.5\nlow_fraction = 0.2\nhigh_fraction = 0.8\n\
+                              [[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 8\nridge_fraction = 0.9\n\
+                              blend = \"max\"\nregion = { x_mm = 50, y_mm = 20, width_mm = 20, height_mm = 40 }\n";
     let button = |fields: &str| {
         format!(
             "{}[[layer]]\nkind = \"button\"\nrim_width_mm = 4\n\
@@ -188,6 +191,7 @@ fn advice_that_is_followed_ends_in_felt() {
         edge.to_owned(),
         button("rim_fraction = 0.5\nface_fraction = 0.2\n"),
         button("rim_fraction = 0.5\nface_fraction = 0.2\ngain = 0.9\nclick_fraction = 0.05\n"),
+        ridge_over_stripes.to_owned(),
     ] {
         let found = judged(&layers, Advice::Sought).layers.pop().unwrap();
         assert_ne!(found.verdict, Verdict::Felt, "{layers}");
@@ -202,8 +206,12 @@ fn advice_that_is_followed_ends_in_felt() {
     }
 }
 
-/// A scene with a field in place of what its top layer has, or added.
+/// A scene with a field in place of what its top layer has, or added. `a constant of` goes below the top layer.
 fn follow(layers: &str, name: &str, field: &str) -> String {
+    if name.starts_with("a constant") {
+        let (below, top) = layers.split_at(layers.rfind("[[layer]]").unwrap());
+        return format!("{below}[[layer]]\nkind = \"constant\"\nfriction_fraction = 0\n{top}");
+    }
     let Some(start) = layers.rfind(&format!("{name} = ")) else { return format!("{layers}{field}\n") };
     let length = layers[start..].find([',', '\n', ' ', '}'].as_slice()).unwrap();
     let end = start + length;

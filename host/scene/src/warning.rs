@@ -84,6 +84,12 @@ pub(crate) enum Warning {
          which are screen coordinates, or the region"
     )]
     EdgeOutsideRegion { layer: String, distance_mm: f64 },
+    /// The region of an edge cuts off the feet of its ridge.
+    #[error(
+        "{layer}: its region leaves {room_mm} mm for a ridge of `width_mm = {width_mm}`, and cuts its feet off: make the \
+         region at least as wide as the ridge"
+    )]
+    RidgeCutOff { layer: String, width_mm: f64, room_mm: f64 },
     /// A layer without a region hides layers below it everywhere.
     #[error(
         "{layer} has no `region`, so it replaces {hidden} on the whole screen{}: give it a `region`, or a `blend` such \
@@ -126,10 +132,19 @@ impl Warning {
         })
     }
 
-    /// Returns a warning if the line of an edge lies far outside its region.
-    pub(super) fn of_line(layer: &str, distance_mm: f64) -> Option<Self> {
-        let distance_mm = digits(distance_mm, f64::round);
-        (distance_mm > 0.0).then(|| Self::EdgeOutsideRegion { layer: layer.to_owned(), distance_mm })
+    /// Returns a warning if the line of an edge lies far outside its region, or inside it without room for the ridge.
+    /// `distances_mm` are those of the region's sides from the line, along the edge's direction.
+    pub(super) fn of_ridge(layer: &str, width_mm: f64, distances_mm: Interval<f64>) -> Option<Self> {
+        let Interval { low, high } = distances_mm;
+        // Ignore rounding errors.
+        let distance_mm = digits((low.max(-high) - 1e-6).max(0.0), f64::round);
+        let room_mm = digits(2.0 * high.min(-low), f64::round);
+        let layer = || layer.to_owned();
+        if distance_mm > 0.0 {
+            Some(Self::EdgeOutsideRegion { layer: layer(), distance_mm })
+        } else {
+            (1e-6..width_mm - 1e-6).contains(&room_mm).then(|| Self::RidgeCutOff { layer: layer(), width_mm, room_mm })
+        }
     }
 
     /// Whether a real board refuses the program because it extrapolates a measurement.

@@ -29,7 +29,7 @@ pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
         let gains = GAINS.iter().filter_map(|factor| with_gain(element, *factor));
         gains.chain(strongest(element)).chain(widest(element))
     };
-    if found.reasons.iter().any(is_small) {
+    let mut changes: Vec<Change> = if found.reasons.iter().any(is_small) {
         let both = strongest(element).into_iter().chain(widest(element)).flat_map(|strong| {
             SIZES.iter().filter_map(move |factor| {
                 let large = resized(&strong.element, *factor)?;
@@ -41,7 +41,21 @@ pub(super) fn changes(element: &Element, found: &LayerVerdict) -> Vec<Change> {
         steeper().chain(stronger()).collect()
     } else {
         stronger().chain(sizes()).collect()
+    };
+    changes.extend(on_bare_glass(element));
+    changes
+}
+
+/// The element without the layers that it adds to, as a constant of no electric friction makes it.
+fn on_bare_glass(element: &Element) -> Option<Change> {
+    (element.layer > 0 && element.joins_those_below()).then_some(())?;
+    let mut program = element.program.clone();
+    for (record, setting) in program.records.iter_mut().zip(&mut program.start).take(element.layer) {
+        (record.gain, setting.gain) = (0.0, 0.0);
     }
+    let Element { burst, is_triggered, .. } = *element;
+    let element = Element { burst, is_triggered, ..Element::of(&program, element.layer)? };
+    Some(Change { text: "a constant of `friction_fraction = 0` below it".to_owned(), element })
 }
 
 /// The element with its record and setting changed; `None` if it becomes invisible.

@@ -1,6 +1,6 @@
 //! Reasons why an element is perceived less certainly than its friction suggests.
 
-use frixel_layers::Burst;
+use frixel_layers::{Burst, Layer};
 use serde::Serialize;
 
 use super::element::Element;
@@ -90,18 +90,20 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps })
         }
         Verdict::Felt => is_buzz(felt).then_some(Reason::Buzz),
-        _ if faultless.verdict() > verdict => {
+        _ if !felt.is_vibration && faultless.verdict() == Verdict::Felt => {
             let surest = faultless.steps().max_by(Step::cmp_felt).unwrap_or(faultless.contrast);
             Some(Reason::TooSmall { limit: SizeLimit::TouchSource, weber_steps: steps(&surest) })
         }
-        _ if scene.sharp.verdict > verdict && !felt.is_vibration => {
+        _ if !felt.is_vibration && scene.sharp.verdict == Verdict::Felt => {
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps: steps(&scene.sharp) })
         }
-        _ if scene.whole.verdict > verdict && !felt.is_vibration => {
+        _ if scene.whole.verdict > verdict && !felt.is_vibration && !is_short_ridge(element) => {
             Some(Reason::TooSlow { way_mm: 1e3 * WAY_MAX_M, weber_steps: steps(&scene.whole) })
         }
         Verdict::Unknown => Some(Reason::NotStudied),
-        _ if scene.whole.contrast_n == 0.0 && felt.border.is_none() && felt.texture.is_none() => Some(Reason::Flat),
+        _ if scene.whole.contrast_n == 0.0 && felt.texture.is_none() && !has_border(element, felt) => {
+            Some(Reason::Flat)
+        }
         _ => Some(Reason::TooWeak),
     };
     let mut reasons: Vec<Reason> = element
@@ -128,6 +130,19 @@ fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
         part if part < 1.0 - 2e-6 => Some(Verdict::Maybe),
         _ => None,
     }
+}
+
+/// Whether it is a ridge within a way over which a change counts as one: its slope cannot be too slow.
+fn is_short_ridge(element: &Element) -> bool {
+    let layer = element.record().map(|record| record.layer);
+    matches!(layer, Some(Layer::Edge(edge)) if f64::from(edge.width_m) <= WAY_MAX_M)
+}
+
+/// Whether a border can be perceived: a ground of natural friction has none to the bare screen.
+fn has_border(element: &Element, felt: &Measured) -> bool {
+    let natural_n = element.program.reach.natural_friction_n;
+    let is_natural = felt.level.is_some_and(|level| level.scene_n <= natural_n);
+    felt.border.is_some_and(|border| !is_natural || border.step.verdict > Verdict::NotFelt)
 }
 
 /// Whether sufficiently strong stripes are perceived as a vibration only.

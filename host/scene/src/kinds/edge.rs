@@ -59,8 +59,9 @@ impl LayerFields for Edge {
     }
 
     fn lower(&self, layer: &Layer, lowering: &mut Lowering) -> Option<Lowered> {
-        let outside_mm = layer.region.as_ref().map_or(0.0, |region| self.outside_mm(region.bounds()));
-        lowering.warn(layer, Warning::of_line(layer.title.as_str(), outside_mm));
+        let distances_mm = layer.region.as_ref().map(|region| self.distances_mm(region.bounds()));
+        let of_ridge = |distances_mm| Warning::of_ridge(layer.title.as_str(), self.width_mm, distances_mm);
+        lowering.warn(layer, distances_mm.and_then(of_ridge));
         let record = Record {
             x_m: (self.x_mm * MM) as f32,
             y_m: (self.y_mm * MM) as f32,
@@ -75,16 +76,16 @@ impl LayerFields for Edge {
 }
 
 impl Edge {
-    /// Distance of the line from a rectangle; 0 if it crosses or touches it.
-    fn outside_mm(&self, Rectangle { x_mm, y_mm, width_mm, height_mm }: Rectangle) -> f64 {
+    /// Distances of the corners of a rectangle from the line, along the edge's direction.
+    fn distances_mm(&self, Rectangle { x_mm, y_mm, width_mm, height_mm }: Rectangle) -> Interval<f64> {
         let angle_rad = self.angle_deg.to_radians();
         let corners =
             [(x_mm, y_mm), (x_mm + width_mm, y_mm), (x_mm, y_mm + height_mm), (x_mm + width_mm, y_mm + height_mm)];
-        let distances = corners
-            .map(|(x_mm, y_mm)| (x_mm - self.x_mm) * libm::cos(angle_rad) + (y_mm - self.y_mm) * libm::sin(angle_rad));
-        let Interval { low, high } = Interval::of(distances);
-        // Ignore rounding errors.
-        (low.max(-high) - 1e-6).max(0.0)
+        Interval::of(
+            corners.map(|(x_mm, y_mm)| {
+                (x_mm - self.x_mm) * libm::cos(angle_rad) + (y_mm - self.y_mm) * libm::sin(angle_rad)
+            }),
+        )
     }
 }
 

@@ -85,8 +85,8 @@ variants!(file_name, FILE_MISTAKES, FileMistake: NotUtf8 WrongKind Syntax Versio
 variants!(fit_name, FIT_MISTAKES, FitMistake: TooMany OffScreen AboveReach BelowNatural TooManyLayers TickTooLong
     PoolTooSmall PeakAboveBoard CarrierTooFast CurrentAboveBoard ContactWiderThanFinger SoftFinger BeyondLaw Model);
 variants!(warning_name, WARNINGS, Warning: ElectricAboveNatural BeyondMeasuredVoltage BeyondMeasuredLoad
-    RmsOutOfReach RimWiderThanButton PictureStretched PictureHidden EdgeAcrossScreen EdgeOutsideRegion HidesAllBelow
-    NameTwice);
+    RmsOutOfReach RimWiderThanButton PictureStretched PictureHidden EdgeAcrossScreen EdgeOutsideRegion RidgeCutOff
+    HidesAllBelow NameTwice);
 variants!(optimisation_name, OPTIMISATIONS, Optimisation: Covered Idle Flat Folded Cropped Shared Bitmap);
 
 impl Met {
