@@ -72,6 +72,8 @@ mod stages {
         played_s: f64,
         /// The command, for a play of [`SHORT_S`].
         short_s: f64,
+        /// `frixel check` of the scene: the judge of its elements.
+        checked_s: f64,
     }
 
     pub(super) fn main() -> ExitCode {
@@ -160,6 +162,7 @@ mod stages {
                 recorded_s: unknown_s,
                 played_s: unknown_s,
                 short_s: unknown_s,
+                checked_s: unknown_s,
             }
         }
 
@@ -168,13 +171,14 @@ mod stages {
             self.world_s = self.world_s.min(timed(|| case.world())?);
             self.board_s = self.board_s.min(timed(|| case.board())?);
             self.recorded_s = self.recorded_s.min(timed(|| case.recorded())?);
-            self.played_s = self.played_s.min(command_s(&case.scene, &seconds)?);
-            self.short_s = self.short_s.min(command_s(&case.scene, SHORT_S)?);
+            self.played_s = self.played_s.min(play_s(&case.scene, &seconds)?);
+            self.short_s = self.short_s.min(play_s(&case.scene, SHORT_S)?);
+            self.checked_s = self.checked_s.min(command_s(&["check", &case.scene])?);
             Ok(())
         }
 
         fn print(&self, case: &Case) {
-            let Self { world_s, board_s, recorded_s, played_s, short_s } = *self;
+            let Self { world_s, board_s, recorded_s, played_s, short_s, checked_s } = *self;
             let ns = |time_s: f64| 1e9 * time_s / case.ticks() as f64;
             println!("{}, {} s: least processor time of {ROUNDS} runs, ns a tick", case.scene, case.seconds);
             println!("                       in all   more   over the world   over the board");
@@ -195,6 +199,7 @@ mod stages {
                 before_s = time_s;
             }
             println!("  of frixel play, {:.0} ms are there however short the play is", 1e3 * short_s);
+            println!("  frixel check takes {:.0} ms", 1e3 * checked_s);
         }
     }
 
@@ -211,13 +216,20 @@ mod stages {
         time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
     }
 
-    /// Time of the processor that the command takes for a play, s. It runs in a process of its own, as people run it.
-    fn command_s(scene: &str, seconds: &str) -> Outcome<f64> {
+    /// Time of the processor that the command takes for a play, s.
+    fn play_s(scene: &str, seconds: &str) -> Outcome<f64> {
         let out = env::temp_dir().join(format!("frixel-play-cost-{}", std::process::id()));
-        let mut command = Command::new(env::current_exe()?);
-        command.args(["play", scene, "--seconds", seconds, "--out"]).arg(&out).env(IS_COMMAND, "1");
-        let output = command.stdout(Stdio::null()).output()?;
+        let folder = out.to_str().ok_or("the temporary folder's name is not UTF-8")?;
+        let time_s = command_s(&["play", scene, "--seconds", seconds, "--out", folder])?;
         std::fs::remove_dir_all(&out)?;
+        Ok(time_s)
+    }
+
+    /// Time of the processor that the command takes with these arguments, s. It runs in a process of its own, as people
+    /// run it.
+    fn command_s(arguments: &[&str]) -> Outcome<f64> {
+        let mut command = Command::new(env::current_exe()?);
+        let output = command.args(arguments).env(IS_COMMAND, "1").stdout(Stdio::null()).output()?;
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         let last = said.lines().last().unwrap_or_default();
         last.parse().map_err(|_| said.clone().into())
