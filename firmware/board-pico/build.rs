@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     if env::var("TARGET")? != target {
         let feature = feature.trim_start_matches("CARGO_FEATURE_").to_lowercase();
-        return Err(format!("the chip of the feature {feature} takes --target {target}").into());
+        return Err(format!("feature {feature} needs --target {target}").into());
     }
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("memory.x"), fs::read_to_string(memories)? + &fs::read_to_string(SECTIONS)?)?;

@@ -114,8 +114,8 @@ impl<P: Port> LoopedRig<P> {
     }
 
     /// Microseconds for which the enable was high while ready was high or the arm switch closed.
-    pub fn refused_us(&self) -> u32 {
-        self.one_shot.refused_us()
+    pub fn forbidden_enable_us(&self) -> u32 {
+        self.one_shot.forbidden_enable_us()
     }
 
     fn progress(&self) -> Progress {

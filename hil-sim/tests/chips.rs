@@ -10,7 +10,7 @@ use embedded_hal_async::i2c::{ErrorKind, I2c, NoAcknowledgeSource};
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use frixel_drivers::i2c_bus_clear::clear_bus;
 use frixel_drivers::polling::poll_once;
-use frixel_drivers::serial::SerialLink;
+use frixel_drivers::serial::BufferedSerial;
 use frixel_drivers::zforce::{self, Touch, ZForce};
 use frixel_hil_sim::chips::{HeldBus, PolledDelay, TouchEvent, Transfer, ZForceModule};
 
@@ -192,7 +192,7 @@ impl Write for Loopback {
 
 #[test]
 fn a_slow_port_loses_and_repeats_nothing() {
-    let mut link = SerialLink::new(Loopback::default());
+    let mut link = BufferedSerial::new(Loopback::default());
     let sent: Vec<u8> = (0..3_000_u32).map(|number| (number % 251) as u8).collect();
     let (mut next, mut received) = (0, Vec::new());
     for tick in 0..3_000 {

@@ -15,7 +15,7 @@ const LINE_BYTES: usize = 5;
 
 /// Longest time for which the enable may be high after ready has risen or the switch was closed, us: one read of the
 /// inputs, and the enable's own fall.
-const REFUSED_MAX_US: u32 = 2;
+const FORBIDDEN_ENABLE_MAX_US: u32 = 2;
 
 /// A person, or a host, at the other end of the line.
 struct Person {
@@ -179,7 +179,7 @@ fn an_amplifier_that_is_there_a_closed_switch_and_a_missing_wire_end_it_at_once(
                 | Defect::SwitchPressedUnderTicks
         );
         assert!(comes_after_pulses || !said.contains("enable_rises_us"), "{said}");
-        assert!(rig.refused_us() <= REFUSED_MAX_US, "{wrong:?}: {} us", rig.refused_us());
+        assert!(rig.forbidden_enable_us() <= FORBIDDEN_ENABLE_MAX_US, "{wrong:?}: {} us", rig.forbidden_enable_us());
     }
 }
 

@@ -16,7 +16,7 @@ use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
 use frixel_testkit::empirical_header;
-use frixel_testkit::samples::{POINTS, sample_records, with_picture};
+use frixel_testkit::samples::{POINTS, sample_records, with_bitmap_crc32};
 use frixel_wire::fault::State;
 use frixel_wire::message::Command;
 use script::{HEADER, Script, constant, record, samples, scene, scene_with_points};
@@ -211,7 +211,7 @@ fn every_kind(crc32: u32) -> (Vec<Record>, Vec<Corner>) {
         let Record { layer, gain, .. } = sample.record;
         let region = if matches!(layer, Layer::Button(_)) { ellipse } else { region };
         let blend = if matches!(layer, Layer::Speed(_)) { Blend::Multiply } else { blend };
-        Record { region, blend, gain, layer: with_picture(layer, crc32) }
+        Record { region, blend, gain, layer: with_bitmap_crc32(layer, crc32) }
     });
     (iter::once(constant(0.003)).chain(records).collect(), points)
 }

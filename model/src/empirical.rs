@@ -92,7 +92,7 @@ impl Display for LawError {
             Self::PointCount { found } => write!(f, "a law has 1 to {POINTS_MAX} points, but this one has {found}"),
             Self::Exponent { found } => write!(f, "the exponent is {found}, but must be {least} to {most}"),
             Self::Order { point } => {
-                write!(f, "point {} is not above the previous one, in volts and in newtons", point + 1)
+                write!(f, "point {} must exceed the previous one in both voltage and friction", point + 1)
             }
             Self::Slope { point, found } => write!(
                 f,

@@ -77,7 +77,7 @@ impl Display for StateError {
     fn fmt(&self, f: &mut Formatter<'_>) -> FmtResult {
         match self {
             Self::NoContact => f.write_str("no contact: the pull is stronger than the attraction at this voltage"),
-            Self::PassesOuterRadius => f.write_str("the contact would pass the outer radius; lower load or voltage"),
+            Self::PassesOuterRadius => f.write_str("the contact would exceed the outer radius; lower load or voltage"),
             Self::OutOfRange => f.write_str("the answer is too large or too small for this precision"),
             Self::NotConverged => f.write_str("the root-finder did not converge"),
             Self::Parameter(error) => error.fmt(f),
@@ -109,7 +109,7 @@ impl Display for InverseError {
         match self {
             Self::BelowNatural => f.write_str("the friction is below the finger's natural friction"),
             Self::Unstable => f.write_str("the contact of this friction is unstable: it is below pull-off"),
-            Self::PassesOuterRadius => f.write_str("the contact of this friction would pass the outer radius"),
+            Self::PassesOuterRadius => f.write_str("this friction needs a contact beyond the outer radius"),
             Self::OutOfRange => f.write_str("the answer is too large or too small for this precision"),
             Self::NotConverged => f.write_str("the root-finder did not converge"),
             Self::Parameter(error) => error.fmt(f),

@@ -87,7 +87,7 @@ impl Fuzzer {
         let said = bytes(&self.log)?;
         let said = String::from_utf8_lossy(&said);
         let last =
-            said.lines().rev().find(|line| line.starts_with("Done ")).unwrap_or("no line says how much was done");
+            said.lines().rev().find(|line| line.starts_with("Done ")).unwrap_or("no line reports the number of runs");
         eprintln!("-- {}: {last}", self.name);
         if status.success() {
             return Ok(());

@@ -84,7 +84,7 @@ fn add_crates(program: &Program, names: &mut BTreeMap<String, BTreeSet<String>>)
     let metadata = text_of(cargo_in(program.folder).args(["metadata", "--locked", "--format-version", "1"]))?;
     let metadata: serde_json::Value =
         serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
-    let packages = metadata["packages"].as_array().ok_or("cargo metadata names no packages")?;
+    let packages = metadata["packages"].as_array().ok_or("cargo metadata lists no packages")?;
     let in_module = compiled(program)?;
     for package in packages {
         let field = |name: &str| package[name].as_str().unwrap_or_default();

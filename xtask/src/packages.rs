@@ -23,7 +23,7 @@ pub(crate) fn check() -> Result<(), String> {
 fn published() -> Result<Vec<Value>, String> {
     let metadata = text_of(cargo_in(".").args(["metadata", "--locked", "--no-deps", "--format-version", "1"]))?;
     let metadata: Value = serde_json::from_str(&metadata).map_err(|error| format!("cargo metadata: {error}"))?;
-    let packages = metadata["packages"].as_array().ok_or("cargo metadata names no packages")?;
+    let packages = metadata["packages"].as_array().ok_or("cargo metadata lists no packages")?;
     // `publish = false` is an empty list of registries.
     let is_published = |manifest: &&Value| manifest["publish"].as_array().is_none_or(|to| !to.is_empty());
     Ok(packages.iter().filter(is_published).cloned().collect())

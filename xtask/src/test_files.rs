@@ -140,7 +140,7 @@ fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
             assert!(file.exists(), "{} links to {link}, which does not exist", document.display());
             let has_anchor =
                 anchor.is_empty() || anchors(&fs::read_to_string(&file).unwrap()).iter().any(|name| name == anchor);
-            assert!(has_anchor, "{} links to {link}, which is no heading there", document.display());
+            assert!(has_anchor, "{} links to {link}, which is not a heading there", document.display());
             count += 1;
         }
     }

@@ -52,7 +52,7 @@ impl<'a> Host<'a> {
         self.ticker.tick(sense)
     }
 
-    /// Sends a ping; the next tick takes the order.
+    /// Sends a ping, and leaves the resulting order for the next tick.
     pub fn ping(&mut self) {
         self.send_without_orders(Command::Ping);
     }

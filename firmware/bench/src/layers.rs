@@ -10,7 +10,7 @@ use frixel_wire::scene::{POINTS_MAX, POLYGON_POINTS_MAX, RECORDS_MAX};
 
 use crate::count::Counter;
 use crate::host::STREAM_HZ;
-use frixel_testkit::samples::{AROUND, CostCase, bitmap_to_count, grating_to_count, samples, with_picture};
+use frixel_testkit::samples::{AROUND, CostCase, bitmap_to_count, grating_to_count, samples, with_bitmap_crc32};
 use frixel_testkit::{HEADER, SceneBytes, scene_with_points};
 
 use crate::tick::Bench;
@@ -52,7 +52,7 @@ pub(crate) fn largest_scene() -> SceneBytes {
 
 /// A picture over the screen.
 pub(crate) const fn bitmap(crc32: u32) -> Layer {
-    with_picture(bitmap_to_count(false), crc32)
+    with_bitmap_crc32(bitmap_to_count(false), crc32)
 }
 
 /// A layer in a region under the finger, with the most expensive blend.
@@ -72,7 +72,7 @@ impl Bench {
         // A constant first, then one that is out of reach: what was played before a case changes its rare ticks.
         let mut cases = samples().flat_map(|sample| sample.costs);
         let mut count = |bench: &mut Self, case: &CostCase| {
-            let record = under(case.region, with_picture(case.layer, crc32));
+            let record = under(case.region, with_bitmap_crc32(case.layer, crc32));
             bench.alone(counter, case.name, record, &[]);
         };
         cases.by_ref().take(1).for_each(|case| count(self, case));

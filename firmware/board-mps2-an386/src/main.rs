@@ -31,7 +31,7 @@ use frixel_control::Board;
 use frixel_cortex_m::{Boot, guard, unreachable_state};
 use frixel_drivers::fault_record::Text;
 use frixel_drivers::pin::DirectPin;
-use frixel_drivers::serial::SerialLink;
+use frixel_drivers::serial::BufferedSerial;
 use frixel_exchange::{BOARD, layout};
 use frixel_wire::message::FAULT_TEXT_MAX_LEN;
 
@@ -77,7 +77,7 @@ fn run(made: BoardParts, boot: Boot, mut peripherals: Peripherals) -> ! {
     };
     let start_tick = |tick| tick::start(boot, tick, peripherals.SYST);
     let mut main_loop = parts.start(made, &tick::SHARED, start_tick, || NoWatchdog);
-    main_loop.serial = Uart::start(bytes, &mut peripherals.NVIC).map(SerialLink::new);
+    main_loop.serial = Uart::start(bytes, &mut peripherals.NVIC).map(BufferedSerial::new);
     // Without sleep: an emulator whose processor sleeps until the next tick wakes it late, sometimes by several ticks,
     // which the tick treats as a missed deadline.
     loop {

@@ -34,5 +34,5 @@ const ROUNDS_MAX: u32 = 5_000_000;
 /// Waits until a part of the processor is ready. If it never is, this panics, which sets the output to zero and
 /// resets.
 pub(crate) fn wait_until(ready: impl Fn() -> bool, what: &str) {
-    assert!((0..ROUNDS_MAX).any(|_| ready()), "waited in vain for {what}");
+    assert!((0..ROUNDS_MAX).any(|_| ready()), "timed out: {what}");
 }

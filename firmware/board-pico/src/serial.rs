@@ -1,7 +1,7 @@
 //! The serial port to the host: UART 0 at 2 Mbaud, through the UART of a Raspberry Pi Debug Probe, or another one.
 //!
-//! An interrupt below the tick stores received bytes: the receive FIFO holds 32 of them, 0.16 ms, and the main
-//! loop may take longer for a turn. The main loop fills the transmit FIFO itself.
+//! An interrupt below the tick stores received bytes: the receive FIFO holds 32 bytes, or 0.16 ms, and an iteration of
+//! the main loop may take longer. The main loop fills the transmit FIFO itself.
 //!
 //! | pin | function | |
 //! |---|---|---|

@@ -1,7 +1,7 @@
 //! The main loop: runs the session between serial port and tick, and all work that is not urgent.
 
 use frixel_control::{Order, Status};
-use frixel_drivers::serial::SerialLink;
+use frixel_drivers::serial::BufferedSerial;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::{Session, SessionEnds, Touch};
 use frixel_wire::fault::{Fault, State};
@@ -20,7 +20,7 @@ pub struct MainLoop<H: Hardware> {
     /// The last status from the tick.
     pub status: Status,
     /// The serial link to the host; `None` if the host is on the board, as in bring-up.
-    pub serial: Option<SerialLink<H::Serial>>,
+    pub serial: Option<BufferedSerial<H::Serial>>,
     /// The DAC, for use while its frames are paused.
     pub dac: H::Dac,
     /// The light that shows the state.

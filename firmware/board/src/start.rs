@@ -14,7 +14,7 @@
 use frixel_control::Board;
 use frixel_drivers::amplifier::Amplifier;
 use frixel_drivers::arm_switch::ArmSwitch;
-use frixel_drivers::serial::SerialLink;
+use frixel_drivers::serial::BufferedSerial;
 use frixel_drivers::state_light::StateLight;
 use frixel_session::store::{CeilingPolicy, Flash, Slot, load_limits};
 
@@ -109,7 +109,7 @@ impl<H: Hardware> Parts<H> {
             queues: session_ends,
             session,
             status,
-            serial: self.serial.map(SerialLink::new),
+            serial: self.serial.map(BufferedSerial::new),
             dac: self.dac,
             light: StateLight::new(self.light, H::TICK_HZ),
             watchdog: start_watchdog(),

@@ -48,8 +48,8 @@ pub enum Order<'a> {
     /// End the stream after its last sample.
     #[cfg(feature = "stream")]
     EndStream {
-        /// Position after the last sample.
-        last: u32,
+        /// End of the stream, exclusive.
+        end: u32,
     },
 }
 

@@ -5,9 +5,9 @@ use embedded_io::{Read, ReadReady, Write, WriteReady};
 /// Number of bytes moved at a time: more than a frame of the protocol.
 const CHUNK_LEN: usize = 256;
 
-/// A port, and the bytes that it has not accepted yet.
+/// A serial port, and the bytes that it has not accepted yet.
 #[derive(Debug)]
-pub struct SerialLink<P> {
+pub struct BufferedSerial<P> {
     port: P,
     transmitting: [u8; CHUNK_LEN],
     /// Number of bytes of `transmitting` accepted by the port, and number of bytes in it.
@@ -15,8 +15,8 @@ pub struct SerialLink<P> {
     len: usize,
 }
 
-impl<P: Read + ReadReady + Write + WriteReady> SerialLink<P> {
-    /// A link over `port`.
+impl<P: Read + ReadReady + Write + WriteReady> BufferedSerial<P> {
+    /// Buffers for `port`.
     pub const fn new(port: P) -> Self {
         Self { port, transmitting: [0; CHUNK_LEN], taken: 0, len: 0 }
     }

@@ -2,7 +2,7 @@
 
 use crate::support::{HEADER, TestBoard, constant, scene_with_points};
 use frixel_layers::{Header, Record, Scene};
-use frixel_testkit::samples::{POINTS, sample_records, with_picture};
+use frixel_testkit::samples::{POINTS, sample_records, with_bitmap_crc32};
 use frixel_wire::message::Command;
 use frixel_wire::scene::bitmap_crc32;
 use proptest::prelude::*;
@@ -11,9 +11,9 @@ const SAMPLES: [u8; 6] = [0, 50, 100, 150, 200, 250];
 
 /// The samples of all kinds, in every region.
 fn records() -> Vec<Record> {
-    let with_picture = |layer| with_picture(layer, bitmap_crc32(3, 2, &SAMPLES));
+    let with_bitmap_crc32 = |layer| with_bitmap_crc32(layer, bitmap_crc32(3, 2, &SAMPLES));
     let records = sample_records().map(|sample| sample.record);
-    records.map(|record| Record { layer: with_picture(record.layer), ..record }).collect()
+    records.map(|record| Record { layer: with_bitmap_crc32(record.layer), ..record }).collect()
 }
 
 // Uploading pictures and starting streams are the session's own features.

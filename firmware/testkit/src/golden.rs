@@ -67,5 +67,5 @@ pub fn how_to_bless() -> String {
     // The test harness names the thread of a test after the test, unless all run on its main thread.
     let test = thread::current().name().filter(|name| *name != "main").map(|name| format!(" {name}"));
     let test = test.unwrap_or_default();
-    format!("If the change is meant, `{BLESS}=1 cargo test{package}{test}` writes it anew.")
+    format!("If the change is intended, run `{BLESS}=1 cargo test{package}{test}` to update it.")
 }

@@ -68,7 +68,7 @@ pub enum EmulatorError {
     },
     /// The simulator was too slow to follow the board's output.
     #[error(
-        "the simulated world is behind the emulated board by more than its memory holds: is the machine overloaded?"
+        "the simulated world lags the emulated board by more than their shared memory holds: is the machine overloaded?"
     )]
     WorldBehind,
 }

@@ -55,12 +55,12 @@ impl Machine {
 
     /// Returns the emulator's output so far.
     pub(super) fn output(&self) -> Result<String, EmulatorError> {
-        fs::read_to_string(&self.output).map_err(EmulatorError::system("reading what the emulator says"))
+        fs::read_to_string(&self.output).map_err(EmulatorError::system("reading the emulator's output"))
     }
 
     /// Returns an error when the emulator has ended.
     pub(super) fn check(&mut self) -> Result<(), EmulatorError> {
-        match self.process.try_wait().map_err(EmulatorError::system("looking after the emulator"))? {
+        match self.process.try_wait().map_err(EmulatorError::system("checking on the emulator"))? {
             None => Ok(()),
             Some(_) => Err(EmulatorError::ended(self.output()?)),
         }

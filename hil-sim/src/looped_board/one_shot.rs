@@ -22,7 +22,7 @@ pub(super) struct OneShot {
     falls_at: Option<u32>,
     /// Time since which the enable has been high.
     high_since: Option<u32>,
-    refused_cycles: u32,
+    forbidden_cycles: u32,
     /// Number of ended pulses.
     pulses: u32,
     rose: Option<u32>,
@@ -33,7 +33,7 @@ impl OneShot {
     /// Advances by one cycle, in which the enable must be low if it `is_refused`, and returns the time.
     pub(super) fn pass(&mut self, is_refused: bool) -> u32 {
         self.now += 1;
-        self.refused_cycles += u32::from(is_refused && self.high_since.is_some());
+        self.forbidden_cycles += u32::from(is_refused && self.high_since.is_some());
         if self.rises_at == Some(self.now) {
             self.high_since = self.high_since.or(Some(self.now));
             self.rose = self.rose.or(Some(self.now));
@@ -82,9 +82,9 @@ impl OneShot {
         self.fell.take()
     }
 
-    /// Time for which the enable was high although it was refused, us.
-    pub(super) fn refused_us(&self) -> u32 {
-        self.refused_cycles / CYCLES_PER_US
+    /// Time for which the enable was high although it was forbidden, us.
+    pub(super) fn forbidden_enable_us(&self) -> u32 {
+        self.forbidden_cycles / CYCLES_PER_US
     }
 
     /// Whether the enable is high in a pulse after the first one.

@@ -8,7 +8,7 @@ use frixel_wire::message::Refusal;
 use frixel_wire::payload::WriteError;
 use thiserror::Error;
 
-/// An open link has closed.
+/// The link closed while in use.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{port} vanished ({reason})")]
 pub struct LinkClosed {

@@ -95,7 +95,8 @@ pub struct FrictionMap {
 }
 
 impl FrictionMap {
-    /// Computes the map of a program. Once `goes_on` breaks, the rest of the map is missing.
+    /// Computes the map of a program. If `goes_on` breaks, returns early: `parts_of_reach` then has fewer values than
+    /// pixels.
     ///
     /// ```
     /// use std::collections::BTreeMap;
@@ -127,7 +128,7 @@ fn caption(program: &Program, preview: &Preview, parts_of_reach: &[f64]) -> Vec<
     let mut sentences = vec![finger(program)];
     match program.finger.origin {
         Origin::Assumed | Origin::Perceptual => {
-            sentences.push("These newtons are assumed: nobody measured the finger.".to_owned());
+            sentences.push("These newtons are assumed: the finger was not measured.".to_owned());
         }
         Origin::Empirical => sentences
             .push("These newtons are empirical: the finger was measured, and follows a law of its own.".to_owned()),

@@ -18,7 +18,7 @@ pub enum Error {
     StandardOutput(io::Error),
     /// The file is whole, under the last path, but does not get its name.
     #[error(
-        "{0} cannot be replaced ({1}); the new one is whole, in {2}: close the program that has the old one open, and \
+        "{0} cannot be replaced ({1}); the complete new file is {2}: close the program that has the old one open, then \
          rename the new one"
     )]
     Unnamed(PathBuf, io::Error, PathBuf),
@@ -32,22 +32,22 @@ pub enum Error {
     #[error("{0} would be written twice: {advice}", advice = another(.1))]
     Twice(PathBuf, &'static str),
     /// The file is write-protected.
-    #[error("{0} is write-protected: {advice}, or allow writing it", advice = another(.1))]
+    #[error("{0} is write-protected: {advice}, or make it writable", advice = another(.1))]
     Protected(PathBuf, &'static str),
     /// A result would replace a recording of a person.
-    #[error("{0} is a recording of a person, which no result replaces: {advice}", advice = another(.1))]
+    #[error("{0} is a recording of a person, and results do not overwrite it: {advice}", advice = another(.1))]
     OfPerson(PathBuf, &'static str),
     /// A recording would replace a file.
-    #[error("{0} already exists, and a recording is not replaced: {new}, or add --overwrite", new = another(.1))]
+    #[error("{0} already exists, and recordings are not overwritten: {new}, or add --overwrite", new = another(.1))]
     Exists(PathBuf, &'static str),
     /// A recording that was cut off has left its rows. The text says how to keep them.
-    #[error("{0} has the rows of a recording that was cut off: {1}, or record anew with --overwrite")]
+    #[error("{0} has the rows of a recording that was cut off: {1}, or record again with --overwrite")]
     CutOff(PathBuf, &'static str),
     /// A file that no recording has left is where the rows would be.
-    #[error("{0} is in the way, and no recording left it: rename it, or record with --overwrite")]
+    #[error("{0} is in the way, and is not from a recording that was cut off: rename it, or record with --overwrite")]
     InTheWay(PathBuf),
     /// There is no recording to finish.
-    #[error("there is no {0} with rows of a recording that was cut off: leave --finish out")]
+    #[error("no recording was cut off, since {0} does not exist: leave --finish out")]
     NoRows(PathBuf),
 }
 

@@ -204,7 +204,7 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     let path = folder.path("rows.csv");
     let partial = || folder.text("rows.csv.partial");
     for (earlier, says) in [
-        ("t_s,x_mm\n0,1\n", "has the rows of a recording that was cut off: keep them, or record anew"),
+        ("t_s,x_mm\n0,1\n", "has the rows of a recording that was cut off: keep them, or record again"),
         ("A letter.", "is in the way, and no recording left it"),
     ] {
         fs::write(folder.path("rows.csv.partial"), earlier).unwrap();

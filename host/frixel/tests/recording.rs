@@ -290,7 +290,7 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
     let mut person = recording.clone();
     (person.metadata.rig, person.metadata.is_simulated) = ("board".to_owned(), false);
     write(folder, "person.parquet", &person);
-    assert!(refused(folder, "person.parquet").ends_with("it is of a board at a port, under a person's finger"));
+    assert!(refused(folder, "person.parquet").ends_with("it was made on a board at a port, under a person's finger"));
 
     let mut silent = recording.clone();
     silent.metadata.play = serde_json::Value::Null;

@@ -45,6 +45,6 @@ fn play() -> Result<(), Box<dyn Error>> {
     let mean_n = felt_n.iter().sum::<f64>() / felt_n.len() as f64;
     let error = played.recorder.summary().friction_error.ok_or("the finger was never on the screen")?;
     println!("{} rows of a millisecond, {} layers", rows.len(), program.records.len());
-    println!("{:.0} mN felt on average, {:.1} mN rms from the scene", 1e3 * mean_n, 1e3 * error.rms_n);
+    println!("{:.0} mN felt on average, with an rms error of {:.1} mN", 1e3 * mean_n, 1e3 * error.rms_n);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Streams what a closure returns to a layer of a scene, as fast as the board plays it:
+//! Streams the values of a closure to a layer of a scene, as fast as the board plays them:
 //!
 //! ```sh
 //! cargo run -p frixel-lab --example stream

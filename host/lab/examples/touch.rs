@@ -1,5 +1,5 @@
-//! A touch source of one's own: places from any pointer, reported as often, as late and as reliably as a touchscreen
-//! that one has measured. Prints how far what is felt is from the scene, for it and for a bundled source.
+//! A custom touch source: places from any pointer, with the rate, latency and losses of a measured touchscreen. Prints
+//! the error of the felt friction with it and with a bundled source.
 //!
 //! ```sh
 //! cargo run -p frixel-lab --example touch

@@ -38,7 +38,7 @@ impl GeneratedStroke {
         }
     }
 
-    /// The names of all.
+    /// The names of all kinds.
     pub fn names() -> impl Iterator<Item = &'static str> {
         Self::ALL.into_iter().map(Self::name)
     }

@@ -1,4 +1,4 @@
-//! Hashes as texts.
+//! Hashes as text.
 
 use sha2::{Digest, Sha256};
 

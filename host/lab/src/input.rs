@@ -70,12 +70,12 @@ pub enum InputError {
         max: u64,
     },
     /// More bytes arrived than the stated size of the file, or than the limit of standard input.
-    #[error("it goes on after {max} bytes, the most that are read")]
+    #[error("it is longer than {max} bytes, the most that are read")]
     TooLong {
         /// Most bytes that are read.
         max: u64,
     },
-    /// The input has more of something, such as rows, than is read.
+    /// A count, such as the number of rows, exceeds its limit.
     #[error("it has {found} {what}, and at most {max} are read")]
     TooMany {
         /// The counted items, in words.
@@ -92,7 +92,7 @@ pub enum InputError {
         what: &'static str,
     },
     /// The operating system has nothing to read at this time.
-    #[error("it has no end that could be read, and a regular file is expected")]
+    #[error("it has no end, and a regular file is expected")]
     Endless,
 }
 
@@ -187,7 +187,7 @@ mod tests {
     fn an_input_without_end_ends_at_its_limit() {
         let mut bytes = Vec::new();
         let error = Bounded::new(repeat(7), 10_000).read_to_end(&mut bytes).unwrap_err();
-        assert_eq!(error.to_string(), "it goes on after 10000 bytes, the most that are read");
+        assert_eq!(error.to_string(), "it is longer than 10000 bytes, the most that are read");
         assert_eq!(bytes.len(), 10_000);
         let mut bytes = Vec::new();
         Bounded::new(repeat(7).take(10_000), 10_000).read_to_end(&mut bytes).unwrap();

@@ -30,7 +30,7 @@ pub enum StrokeFileError {
     /// A number is not one of a stroke.
     #[error("row {row}, column {column}: {reason}{}", .if_in_file)]
     Number {
-        /// Its row, as people count them: the header is row 1.
+        /// Number of its row; the header is row 1.
         row: u64,
         /// The name of its column.
         column: &'static str,
@@ -42,7 +42,7 @@ pub enum StrokeFileError {
     /// The rows do not describe a stroke of a finger.
     #[error("{0}")]
     Refused(String),
-    /// The finger cannot go through the places.
+    /// The finger cannot follow these places.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
 }
@@ -144,7 +144,7 @@ fn stroke_row(row: &Row, [t, x, y]: [Place; 3], load: Option<Place>) -> Result<S
         Some(found_n) => Err(StrokeFileError::Number {
             row: row.number(),
             column: LOAD.name,
-            reason: format!("{found_n} is no load of a finger: give newtons, above 0 and at most 50"),
+            reason: format!("{found_n} is not a valid load of a finger: give newtons, above 0 and at most 50"),
             if_in_file: ", or name the column force_mn if it is in millinewtons",
         }),
         None => Ok(StrokeRow { t_s, place: Some(place), normal_load_n }),

@@ -385,7 +385,7 @@ impl<'t> Row<'t> {
                 let (column, found, readings) = (brief(column), self.quoted(place), readings.join(" or as "));
                 return Err(TableError::new(
                     format!("row {row}, column {column}: {found:?} can be read as {readings}"),
-                    "save the file without separators of thousands, and with points in numbers",
+                    "save the file with decimal points and without thousands separators",
                 ));
             }
         };

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use frixel_lab::fit::{Data, EmpiricalFit, Estimate, FitError, Row, VoltageLaw, data, fit, fit_empirical};
+use frixel_lab::fit::{
+    Data, EmpiricalFit, Estimate, FitError, HeldOutError, Row, VoltageLaw, data, fit, fit_empirical,
+};
 use frixel_play::TO_THE_END;
 use frixel_scene::{Experiment, FingerProfile, Profile};
 
@@ -52,8 +54,8 @@ fn powers_of_the_voltage_are_recovered_where_the_contact_model_is_refused() {
             missed_friction += u32::from(!contains(&fit.highest.electric_friction_n, truth_n));
             missed_exponent += u32::from(!contains(&exponent_of(&fit), exponent));
             assert!((fit.highest.electric_friction_n.value / truth_n - 1.0).abs() < 0.03, "{exponent}: {fit:?}");
-            let (error_n, mean_n) = fit.held_out_n.unwrap();
-            assert!(error_n < 0.1 * mean_n, "{error_n} of {mean_n}");
+            let HeldOutError { rms_n, mean_friction_n } = fit.held_out.unwrap();
+            assert!(rms_n < 0.1 * mean_friction_n, "{rms_n} of {mean_friction_n}");
         }
     }
     assert!(missed_friction <= 3 && missed_exponent <= 3, "{missed_friction} and {missed_exponent} of 18");
@@ -105,7 +107,7 @@ fn means_have_a_power_law_with_its_friction_coefficient_too() {
         }
         let fit = fit_empirical(data(csv.as_bytes()).unwrap().value, &settings(), TO_THE_END).unwrap();
         assert!(contains(&exponent_of(&fit), exponent) && contains(&fit.highest.electric_friction_n, 0.1), "{fit:?}");
-        assert_eq!((fit.strokes, fit.held_out_n), (5, None));
+        assert_eq!((fit.strokes, fit.held_out), (5, None));
         assert!((fit.friction_coefficient.value - 0.5).abs() < 1e-3, "{:?}", fit.friction_coefficient);
     }
 }
@@ -150,8 +152,8 @@ fn a_finger_without_a_power_law_has_the_points_that_were_measured() {
                 missed += u32::from(!contains(&point.electric_friction_n, truth_n));
                 assert!((point.electric_friction_n.value / truth_n - 1.0).abs() < 0.1, "{volts}: {point:?}");
             }
-            let (error_n, mean_n) = fit.held_out_n.unwrap();
-            assert!(error_n < 0.1 * mean_n, "{error_n} of {mean_n}");
+            let HeldOutError { rms_n, mean_friction_n } = fit.held_out.unwrap();
+            assert!(rms_n < 0.1 * mean_friction_n, "{rms_n} of {mean_friction_n}");
         }
     }
     // Of 18 intervals of 95 %, four or more miss the truth in one set of seeds in 90.

@@ -309,7 +309,7 @@ fn invert_takes_the_friction_that_is_filled_in() {
             "below-natural",
             "below-natural",
             "unstable",
-            "invalid: row 8, column friction_n: neither it nor electric_friction_n is filled in",
+            "invalid: row 8, column friction_n: neither friction_n nor electric_friction_n is filled in",
             "invalid: row 9: friction_n and electric_friction_n are both filled in; leave one empty",
             "below-natural",
             "ok",

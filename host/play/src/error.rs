@@ -11,8 +11,8 @@ use crate::live_layers::LiveError;
 /// Why a play ended early, or a change of it was not made.
 #[derive(Debug, Error)]
 pub enum PlayError {
-    /// The contact model rejects the finger of the program.
-    #[error("the contact model rejects the scene's finger: {0}")]
+    /// The contact model refuses the finger of the program.
+    #[error("the contact model refuses the scene's finger: {0}")]
     Finger(#[from] ParameterError),
     /// The board rejected a request, or stopped answering.
     #[error(transparent)]

@@ -19,7 +19,7 @@ pub enum LiveError {
     Layer(#[from] LayerError),
     /// The layer is on.
     #[error(
-        "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first, by `layer {layer:?} off`"
+        "layer {layer:?} is on, and a trigger plays a layer that is off: switch it off first with `layer {layer:?} off`"
     )]
     TriggerOn {
         /// The name or number that was given.
@@ -27,15 +27,15 @@ pub enum LiveError {
     },
     /// The layer has a gain of zero, and its blend leaves the layers below as they are then.
     #[error(
-        "layer {layer:?} has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
-         `layer {layer:?} gain 1`"
+        "layer {layer:?} has a gain of 0, so a trigger would play nothing: set its gain first with `layer {layer:?} \
+         gain 1`"
     )]
     TriggerSilent {
         /// The name or number that was given.
         layer: String,
     },
     /// The layer is of a kind that a trigger does not play.
-    #[error("{layer:?} is {what}, so that a trigger may play nothing: trigger a `vibration` or a `constant`")]
+    #[error("{layer:?} is {what}, so a trigger might play nothing: trigger a `vibration` or a `constant`")]
     TriggerNotFelt {
         /// The name or number that was given.
         layer: String,
@@ -44,7 +44,7 @@ pub enum LiveError {
     },
     /// The layer plays samples, and none are streamed.
     #[error(
-        "layer {layer:?} plays what is streamed, and nothing is, so that a trigger plays nothing: give `--stream FILE`"
+        "layer {layer:?} plays a stream, but none is running, so a trigger would play nothing: add `--stream FILE`"
     )]
     TriggerUnfed {
         /// The name or number that was given.

@@ -364,7 +364,7 @@ impl<L: Link + Recorded> Player<L> {
         Ok(())
     }
 
-    /// State and latched fault, as the board reported them last.
+    /// State and latched fault last reported by the board.
     pub fn state(&self) -> (State, Option<Fault>) {
         (self.state, self.fault)
     }

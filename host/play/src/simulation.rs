@@ -55,7 +55,7 @@ pub enum SimulationError {
     #[error(transparent)]
     Stroke(#[from] StrokeError),
     /// The board rejected the scene.
-    #[error("the board does not take this scene: {0}")]
+    #[error("the board refused this scene: {0}")]
     Refused(#[source] DeviceError),
     /// The play failed.
     #[error(transparent)]

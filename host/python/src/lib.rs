@@ -1,7 +1,7 @@
 //! The compiled part of the Python module `frixel`, called by the Python files beside it (`python/frixel`).
 //!
-//! Values cross as arrays, texts and plain objects; the public types and their documentation are in the Python files.
-//! Computations release Python's lock.
+//! Arguments and results are arrays, strings and plain objects; the public types and their documentation are in the
+//! Python files. Computations release the GIL.
 #![forbid(unsafe_code)]
 #![allow(clippy::needless_pass_by_value, reason = "functions that Python calls take converted values")]
 

@@ -1,4 +1,4 @@
-//! Long work without Python's lock that Ctrl-C interrupts.
+//! Runs long work without the GIL, interruptible by Ctrl-C.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,7 @@
 //! Studies of many simulated fingers. Cells and results cross as the JSON of `frixel sweep`.
 
 use std::collections::BTreeMap;
-use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use frixel_lab::input::{KeptFiles, SceneFolder, read_toml};
@@ -58,9 +58,7 @@ pub(crate) fn sweep_cells(
 /// A scene file with the files that it names.
 fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
     let path = folder.join(name);
-    let bytes = read_toml(&path).map_err(|error| {
-        unreadable(format_args!("the scene {} cannot be read ({error}): check the path", path.display()))
-    })?;
+    let bytes = read_toml(&path).map_err(unreadable(&path, "check the path"))?;
     let files = KeptFiles::new(Some(SceneFolder::of(&path)), NamedFiles::new());
     ParsedScene::parse(&bytes, name, &files).map_err(mistakes)?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
@@ -71,8 +69,7 @@ fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
 fn text_in(folder: &Path, kind: FileKind, name: &str) -> Result<String, Raised> {
     let path = folder.join(name);
     let advice = "give its file, from the plan's folder, or a bundled one";
-    let bytes = read_toml(&path)
-        .map_err(|error| unreadable(format_args!("{} {}: {error}; {advice}", kind.word(), path.display())))?;
+    let bytes = read_toml(&path).map_err(unreadable(&path, advice))?;
     kind.text(&bytes, name).map(str::to_owned).map_err(mistakes)
 }
 
@@ -81,8 +78,11 @@ fn mistakes(error: CompileError) -> Raised {
     Raised(Python::attach(|py| scene_error(py, &error)))
 }
 
-fn unreadable(sentence: impl Display) -> Raised {
-    Raised(Python::attach(|py| parameter_error(py, sentence)))
+fn unreadable(path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Raised {
+    move |error| {
+        let sentence = format!("{} cannot be read ({error}): {advice}", path.display());
+        Raised(Python::attach(|py| parameter_error(py, sentence)))
+    }
 }
 
 /// Plays a cell. Returns its result.

@@ -41,7 +41,7 @@ def test_all_mistakes_are_told_with_their_places() -> None:
 
 
 def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"nothing\.toml: this scene file cannot be read \(.+\): check the path"):
+    with pytest.raises(SceneError, match=r"nothing\.toml cannot be read \(.+\): check the path"):
         Scene.load(tmp_path / "nothing.toml")
     with (tmp_path / "large.toml").open("wb") as large:
         large.truncate((4 << 20) + 1)
@@ -49,7 +49,7 @@ def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
         Scene.load(tmp_path / "large.toml")
     with pytest.raises(SceneError, match="a regular file is expected"):
         Scene.load("/dev/zero")
-    with pytest.raises(SceneError, match="this scene file cannot be read"):
+    with pytest.raises(SceneError, match="cannot be read"):
         Scene.load(tmp_path)
     (tmp_path / "brick.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(5 << 20))
     with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a scene: make a scene"):

@@ -20,7 +20,7 @@ pub struct CompileError {
     pub has_more: bool,
 }
 
-const MORE: &str = "\nthese are 100 mistakes, and there are more: mend these first";
+const MORE: &str = "\nthere are more than these 100 mistakes: fix these first";
 
 fn list(diagnostics: &[Diagnostic]) -> String {
     let lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();

@@ -45,7 +45,7 @@ impl SpringFit {
                     friction_coefficient: profile.friction_coefficient,
                 };
                 let springs = fit(profile, &finger, gap_m, voltage_max_v_rms).ok_or_else(|| FitMistake::Model {
-                    reason: "no springs have the friction of this soft finger at the largest voltage".to_owned(),
+                    reason: "no linear springs match this soft finger at the largest voltage".to_owned(),
                 })?;
                 Ok(springs)
             }

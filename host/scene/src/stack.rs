@@ -90,7 +90,7 @@ fn too_many(found: usize) -> FileMistake {
         "layers in this scene",
         found,
         LAYERS_MAX,
-        "no board takes more than 255; draw a pattern as a picture",
+        "no board supports more than 255; draw a pattern as a picture",
     )
 }
 

@@ -57,7 +57,7 @@ impl Voltage {
         let scene_max_v_rms = screen.voltage_max_v_rms.unwrap_or(f64::INFINITY).min(drive.voltage_max_v_rms);
         if scene_max_v_rms < drive.voltage_max_v_rms {
             let note = format!(
-                "drive: the screen bears {scene_max_v_rms} V rms, less than the {} V rms of the scene",
+                "drive: the screen withstands {scene_max_v_rms} V rms, less than the {} V rms of the scene",
                 drive.voltage_max_v_rms
             );
             log.note(drive.places.field("voltage_max_v_rms"), note);

@@ -17,7 +17,7 @@ pub enum HostError {
     #[error(transparent)]
     Play(#[from] PlayError),
     /// The board, or its player, refuses a scene that the compiler accepts.
-    #[error("the board does not take this scene: {0}")]
+    #[error("the board refused this scene: {0}")]
     Refused(PlayError),
     /// The simulated world could not be built, or the strokes that judge the scene could not be played.
     #[error(transparent)]
@@ -26,7 +26,7 @@ pub enum HostError {
     #[error(transparent)]
     Control(#[from] ControlError),
     /// A control line that a page does not carry out.
-    #[error("`{line}` is not carried out in a page: write layer or trigger")]
+    #[error("`{line}` cannot run in a page: use `layer` or `trigger`")]
     NotInPage {
         /// The line.
         line: String,

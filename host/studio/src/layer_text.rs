@@ -30,7 +30,7 @@ pub enum TextError {
     #[error("this is not TOML: {}", .0.message())]
     Toml(#[from] toml::de::Error),
     /// The page asks for something that this engine does not know. Only a mistake in the page leads to it.
-    #[error("the page asks for nothing that this engine knows")]
+    #[error("this engine does not know the page's request")]
     Request,
     /// A value would stand in a table that the text does not have.
     #[error("the text has no table {0}: write it first")]

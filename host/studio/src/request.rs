@@ -51,16 +51,16 @@ pub struct Numbers {
 #[derive(Debug, Error)]
 pub enum RequestError {
     /// The buffer is shorter than the request states.
-    #[error("the request ends after {found} bytes, and states more")]
+    #[error("the request ends after {found} bytes, but states more")]
     Short {
         /// Length of the buffer.
         found: usize,
     },
     /// The JSON text is none.
-    #[error("the request is not what this engine reads: {0}")]
+    #[error("this engine cannot read the request: {0}")]
     Json(#[from] serde_json::Error),
     /// The scene is not among the files.
-    #[error("no file of the request is called {entry:?}")]
+    #[error("the request has no file named {entry:?}")]
     NoEntry {
         /// Name of the scene.
         entry: String,

@@ -12,7 +12,7 @@ pub fn contact_exponent<T: Real>(stress_exponent_s: T) -> Result<T, ParameterErr
     Ok(s / (T::TWO * s + T::ONE))
 }
 
-/// A finger of a material whose strain follows a power of the stress, Eq. (22), in a sphere's contact.
+/// A spherical finger of a power-law material: strain is a power of stress, Eq. (22).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftFinger<T> {
     /// Radius of curvature `R` at the contact, in metres.

@@ -57,7 +57,7 @@ impl Display for TableError {
                 "finger, gap and load must be finite and above zero, and friction and voltage scales fit into f32"
             }
             Self::Range => "the range of frictions must begin above zero and not be empty",
-            Self::Target => "the error target is below the rounding error of the table's precision; allow more",
+            Self::Target => "the error target is below the rounding error of the table's precision; allow a larger one",
             Self::TooManySegments => "the range of frictions needs more rows than the table has room for; narrow it",
             Self::Unrepresentable => "a friction or coefficient is too large or too small for the table's precision",
         })

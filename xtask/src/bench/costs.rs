@@ -61,7 +61,7 @@ pub(crate) fn check(figures: &Figures) -> Result<(), String> {
     }
     let drifted: Vec<&str> = measured.lines().filter(|line| !found.contains(line)).map(str::trim).collect();
     Err(format!(
-        "{PATH} is not what was measured; `FRIXEL_BLESS=1 cargo xtask bench` writes it anew: {}",
+        "{PATH} differs from the measurement: run `FRIXEL_BLESS=1 cargo xtask bench` to update it: {}",
         drifted.join(" ")
     ))
 }

@@ -54,7 +54,7 @@ pub(super) fn follow(mut emulator: Command, image: &Path, inputs: &[u32]) -> Res
     for _ in inputs {
         let (case, empty) = span(&mut gdb, &code, end)?;
         let (_, full) = span(&mut gdb, &code, end)?;
-        let seen = seen.get_mut(case as usize).ok_or("the benchmark follows a case that was not asked for")?;
+        let seen = seen.get_mut(case as usize).ok_or("the benchmark follows a case that was not requested")?;
         seen.instructions = full.instructions + NOTHING.instructions - empty.instructions;
         seen.cycles = full.cycles + NOTHING.cycles - empty.cycles;
     }

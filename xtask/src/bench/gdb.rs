@@ -76,7 +76,7 @@ impl Gdb {
         let digits = answer.get(8 * number..8 * (number + 1)).unwrap_or_default();
         u32::from_str_radix(digits, 16)
             .map(u32::swap_bytes)
-            .map_err(|_| format!("the emulator says that its registers are `{answer}`"))
+            .map_err(|_| format!("the emulator reports its registers as `{answer}`"))
     }
 
     fn expect_ok(&mut self, packet: &str) -> Result<(), String> {
@@ -91,7 +91,7 @@ impl Gdb {
     fn expect_stop(&mut self, packet: &str) -> Result<(), String> {
         match self.request(packet)? {
             answer if answer.starts_with('T') => Ok(()),
-            answer => Err(format!("the benchmark image did not come to what was to be followed: `{answer}`")),
+            answer => Err(format!("the benchmark image did not reach the case to follow: `{answer}`")),
         }
     }
 

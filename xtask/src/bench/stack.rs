@@ -158,7 +158,7 @@ impl Functions {
             return Err(format!("{} calls itself", function.name));
         }
         if function.calls_register || function.moves_stack {
-            return Err(format!("{} calls, or moves the stack pointer by, what a register says", function.name));
+            return Err(format!("{} makes an indirect call, or moves the stack pointer by a register", function.name));
         }
         path.push(address);
         let mut deepest = 0;

@@ -78,14 +78,14 @@ fn part<'a>(carrier: &'a Carrier, name: &str) -> &'a Part {
 #[test]
 fn the_page_is_that_of_the_table() {
     let held = fs::read_to_string(root().join(PAGE)).unwrap();
-    assert!(held == page(&read().unwrap()), "`cargo xtask hardware` writes {PAGE} anew");
+    assert!(held == page(&read().unwrap()), "run `cargo xtask hardware` to update {PAGE}");
 }
 
 #[test]
 fn the_schematic_is_that_of_the_table_and_shows_every_part_once_and_every_node() {
     let carrier = read().unwrap();
     let held = fs::read_to_string(root().join(SCHEMATIC)).unwrap();
-    assert!(held == schematic::draw(&carrier), "`cargo xtask hardware` writes {SCHEMATIC} anew");
+    assert!(held == schematic::draw(&carrier), "run `cargo xtask hardware` to update {SCHEMATIC}");
     let lines: Vec<&str> = held.lines().collect();
     let texts = |class: &str, text: &str| {
         let class = format!("class=\"{class}\"");

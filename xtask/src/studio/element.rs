@@ -1,4 +1,4 @@
-//! `<frixel-scene>`: the modules that it needs, and no others, as one script.
+//! Bundles `<frixel-scene>` and only the modules it needs into one script.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path};

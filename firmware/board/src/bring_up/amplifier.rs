@@ -40,8 +40,8 @@ pub(super) fn check_amplifier(bench: &mut impl Bench, built_in: &BoardLimits) ->
     confirm(
         bench,
         format_args!(
-            "Take the ohmmeter's leads off. The high-voltage probe on the capacitor, an ordinary one on the monitor. \
-             Close the box."
+            "Take the ohmmeter's leads off. Put the high-voltage probe on the capacitor, an ordinary one on the \
+             monitor. Close the box."
         ),
         DONE,
     );

@@ -26,12 +26,12 @@ pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
         format_args!(
-            "Connect monostable and gate (U3, U4), the switch's second pole and R7. The amplifier's supply is off, \
-             and its ENABLE and READY are unplugged. The voltmeter on ENABLE_LOGIC, the gate's output."
+            "Connect monostable and gate (U3, U4), the switch's second pole and R7. The amplifier's supply is off, and \
+             its ENABLE and READY are unplugged. Put the voltmeter on ENABLE_LOGIC, the gate's output."
         ),
         UNPLUGGED,
     );
-    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    expect_inputs(bench, IDLE, "switch released, ready unconnected")?;
     // The last code was not zero, and only CLEAR holds the output at zero.
     check(bench, Check::Dac)?;
     for (kicked, sync, what, expected) in [
@@ -42,20 +42,20 @@ pub(super) fn check_enable_path(bench: &mut impl Bench) -> Result<(), Stop> {
         (true, Sync::Every2Ms, "ENABLE_LOGIC, its mean with one SYNC every 2 ms, V", PULSE_MEAN_V),
     ] {
         ask_while(bench, TestOutput::Enable { kicked, sync }, what, expected)?;
-        expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+        expect_inputs(bench, IDLE, "switch released, ready unconnected")?;
     }
     confirm(
         bench,
-        format_args!("Take the oscilloscope off. The voltmeter on ENABLE, at R7, behind the switch's second pole."),
+        format_args!("Take the oscilloscope off. Put the voltmeter on ENABLE, at R7, behind the switch's second pole."),
         DONE,
     );
     ask_while(bench, ALL, "ENABLE, switch released, ENABLE_LOGIC high, V", LOW_V)?;
-    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    expect_inputs(bench, IDLE, "switch released, ready unconnected")?;
     await_inputs(bench, IDLE, CLOSED, "Hold the switch")?;
     // Touching poles bypass everything else with 3.3 V.
     ask_while(bench, TestOutput::Zero, "ENABLE, switch held, ENABLE_LOGIC low, V", LOW_V)?;
-    expect_inputs(bench, CLOSED, "switch held, ready in the air")?;
+    expect_inputs(bench, CLOSED, "switch held, ready unconnected")?;
     ask_while(bench, ALL, "ENABLE, switch held, ENABLE_LOGIC high, V", HIGH_V)?;
-    expect_inputs(bench, CLOSED, "switch held, ready in the air")?;
+    expect_inputs(bench, CLOSED, "switch held, ready unconnected")?;
     await_inputs(bench, CLOSED, IDLE, "Release the switch")
 }

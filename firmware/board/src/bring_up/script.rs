@@ -85,7 +85,7 @@ impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Limits => f.write_str(
-                "a limit, built in or measured, is beyond what the board may store; build bring-up with another",
+                "a limit, built in or measured, exceeds what the board may store; build bring-up with another",
             ),
             Self::Check(check) => write!(f, "the check of {check:?} has failed"),
             Self::Reading { what, found, expected: (min, max) } => {
@@ -93,14 +93,14 @@ impl fmt::Display for Stop {
             }
             Self::Inputs { after, expected, found } => write!(
                 f,
-                "after \"{after}\": ready {} and switch {} expected, ready {} and switch {} found",
+                "after \"{after}\": expected ready {} and switch {}, found ready {} and switch {}",
                 level(expected.amplifier_ready),
                 level(expected.switch_closed),
                 level(found.amplifier_ready),
                 level(found.switch_closed),
             ),
             Self::Drive(error) => error.fmt(f),
-            Self::NotStored => f.write_str("the limits could not be stored and read back with the tick in time"),
+            Self::NotStored => f.write_str("storing the limits and reading them back failed, or delayed the tick"),
         }
     }
 }
@@ -151,7 +151,7 @@ fn greet(bench: &mut impl Bench) {
     bench.say(format_args!(""));
     bench.say(format_args!("frixel bring-up. Read docs/board/hardware.md first: this board drives hundreds of volts."));
     bench.say(format_args!(
-        "Nothing is driven before step 5. A wrong reading ends bring-up, and only a reset begins it again."
+        "Nothing is driven before step 5. A wrong reading ends bring-up, and only a reset restarts it."
     ));
     confirm(bench, format_args!("0. Serial port."), GREETING);
 }
@@ -187,7 +187,7 @@ fn check_dac(bench: &mut impl Bench) -> Result<(), Stop> {
         ask_while(bench, TestOutput::Dac(volts), "the voltmeter shows, V", expected)?;
         expect_inputs(bench, IDLE, "amplifier off, switch released")?;
     }
-    bench.say(format_args!("The last code was {} V, and CLEAR is low since then.", DAC_VOLTAGES_V[2]));
+    bench.say(format_args!("The last code was {} V, and CLEAR has been low since then.", DAC_VOLTAGES_V[2]));
     ask(bench, "the voltmeter shows, V", (-DAC_TOLERANCE_V, DAC_TOLERANCE_V))?;
     Ok(())
 }
@@ -197,12 +197,12 @@ fn check_inputs(bench: &mut impl Bench) -> Result<(), Stop> {
     confirm(
         bench,
         format_args!(
-            "3. Connect the arm switch, R10, R11 and C1. The ready wire ends in the air. The amplifier's supply stays \
-             off."
+            "3. Connect the arm switch, R10, R11 and C1. Leave the ready wire unconnected. The amplifier's supply \
+             stays off."
         ),
         DONE,
     );
-    expect_inputs(bench, IDLE, "switch released, ready in the air")?;
+    expect_inputs(bench, IDLE, "switch released, ready unconnected")?;
     for (what, from, to) in [
         ("Hold the switch", IDLE, CLOSED),
         ("Release the switch", CLOSED, IDLE),
@@ -267,7 +267,7 @@ fn drive(bench: &mut impl Bench, peak_v: f32) -> Result<Reading, Stop> {
     let pressed = press(bench, peak_v);
     let reading = bench.drive(pressed, peak_v)?;
     bench.say(format_args!(
-        "Off. {:.1} V peak were driven; the monitor showed {:.1} V and {:.1} V, and {:.1} V afterwards.",
+        "Output off. Drove {:.1} V peak; the monitor read {:.1} V and {:.1} V, then {:.1} V after it.",
         reading.driven_v_peak, reading.high_v, reading.low_v, reading.rest_v
     ));
     expect("the driven voltage, V peak", reading.driven_v_peak, (peak_v - READ_OFF_V, peak_v + READ_OFF_V))?;

@@ -69,26 +69,27 @@ impl fmt::Display for Stop {
         match self {
             Self::Ready => f.write_str("ready is high: switch the amplifier's supply off, and unplug the amplifier"),
             Self::Switch => f.write_str(
-                "the arm switch is closed: let it go, and if nobody holds it, unplug it, for its contact is welded",
+                "the arm switch is closed: release it; if it was not pressed, its contact is welded, so unplug it",
             ),
             Self::MonitorDriven(levels) => {
                 write!(f, "something drives the monitor's pin ({levels}): unplug the amplifier and its monitor")
             }
             Self::MonitorNotZero(mv) => write!(
                 f,
-                "the monitor's pin reads {mv} mV with zero volts on its wire: is the wire there, and the amplifier \
+                "the monitor's pin reads {mv} mV with zero volts on its wire: is the wire connected, and the amplifier \
                  unplugged?"
             ),
-            Self::Missing(wire) => write!(f, "the wire of {wire} is missing, or at a pin beside the right one"),
+            Self::Missing(wire) => write!(f, "{wire} is not wired, or its wire is on a neighbouring pin"),
             Self::Resting(wire, levels) => {
-                write!(f, "{wire} does not rest where it must ({levels}): is its wire at another pin?")
+                write!(f, "{wire} idles at the wrong level ({levels}): check which pin its wire is on")
             }
             Self::EnableStaysHigh => {
                 f.write_str("the enable did not fall after a pulse: no amplifier may be connected to this board")
             }
             Self::Data(wrong) => write!(
                 f,
-                "of {} bytes over SDI, {wrong} came back wrong on SDO: is the wire there, and the DAC unplugged?",
+                "{wrong} of {} bytes sent over SDI came back wrong on SDO: is the wire connected, and the DAC \
+                 unplugged?",
                 PATTERNS.len()
             ),
             Self::Drive(error) => write!(f, "the largest scene did not play: {error}"),
@@ -208,8 +209,8 @@ fn unplug<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
     confirm(
         board,
         format_args!(
-            "1. Put the wires on, as docs/board/first-board.md lists them. The enable is pulsed: the amplifier is \
-             unplugged, and so is the DAC."
+            "1. Connect the wires that docs/board/first-board.md lists. The enable is pulsed: unplug the amplifier and \
+             the DAC."
         ),
         UNPLUGGED,
     );
@@ -232,7 +233,7 @@ fn find_wires<B: LoopedBoard>(board: &mut B) -> Result<(), Stop> {
         return Err(Stop::Data(wrong));
     }
     refuse_inputs_or_voltage(board)?;
-    board.say(format_args!("All wires are there."));
+    board.say(format_args!("All wires are connected."));
     Ok(())
 }
 
@@ -331,7 +332,7 @@ fn measure_line<B: LoopedBoard>(board: &mut B, load: &mut Load, counts: &mut Cou
     load.rest(board)?;
     let wants_it = loop {
         board.say(format_args!(
-            "3. The line, against `frixel board selftest --wires`; a person skips it. Then type: {LINE_TEST} or {SKIP}"
+            "3. The line, tested by `frixel board selftest --wires`; without it, skip. Then type: {LINE_TEST} or {SKIP}"
         ));
         match board.read_line().trim() {
             LINE_TEST => break true,

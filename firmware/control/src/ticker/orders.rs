@@ -46,7 +46,7 @@ impl<'a> Ticker<'a> {
             #[cfg(feature = "stream")]
             Order::StartStream(start) => self.stream.start(start),
             #[cfg(feature = "stream")]
-            Order::EndStream { last } => self.stream.end(last),
+            Order::EndStream { end } => self.stream.end(end),
             // The supervisor has already applied them.
             Order::SignOfLife | Order::Arm | Order::Disarm | Order::Play | Order::Stop | Order::ClearFault => {}
             // `apply` has handled them.

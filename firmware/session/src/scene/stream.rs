@@ -43,7 +43,7 @@ impl<'a> Stream<'a> {
     /// The order is not needed if the ticker stops the stream itself: when it leaves the Active state, or loads a scene
     /// without a stream.
     pub(crate) fn end(&mut self) -> Option<Order<'a>> {
-        self.intake.as_mut()?.end().map(|last| Order::EndStream { last })
+        self.intake.as_mut()?.end().map(|end| Order::EndStream { end })
     }
 
     pub(crate) fn take(&mut self, first_index: u32, samples: &[[u8; 2]]) {

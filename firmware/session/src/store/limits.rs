@@ -125,24 +125,27 @@ impl fmt::Display for LimitsError {
                  measure again",
             ),
             Self::VoltagePeak { found } => {
-                write!(f, "the largest voltage is {found} V peak, its ceiling {VOLTAGE_CEILING_V_PEAK} V: lower it")
+                write!(
+                    f,
+                    "the largest voltage is {found} V peak, and its ceiling is {VOLTAGE_CEILING_V_PEAK} V: lower it"
+                )
             }
             Self::CurrentRms { found } => write!(
                 f,
-                "the largest current is {} mA rms, its ceiling {} mA: lower it",
+                "the largest current is {} mA rms, and its ceiling is {} mA: lower it",
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_RMS
             ),
             Self::CurrentPeak { found } => write!(
                 f,
-                "the largest current is {} mA peak, its ceiling {} mA: lower it",
+                "the largest current is {} mA peak, and its ceiling is {} mA: lower it",
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
             Self::CurrentAtRail { found } => write!(
                 f,
-                "an amplifier that is stuck at a rail drives {} mA through the series resistance, its ceiling {} mA: take \
-                 a larger resistance",
+                "an amplifier that is stuck at a rail drives {} mA through the series resistance, and its ceiling is \
+                 {} mA: use a larger resistance",
                 1e3 * found,
                 1e3 * CURRENT_CEILING_A_PEAK
             ),
@@ -155,7 +158,7 @@ impl fmt::Display for LimitsError {
             ),
             Self::Edges { found_s, expected_s } => write!(
                 f,
-                "the edges are {} us, and {} us for the electrode behind the series resistance: correct edges, \
+                "the edges are {} us, but the electrode behind the series resistance gives {} us: correct edges, \
                  electrode or resistance",
                 1e6 * found_s,
                 1e6 * expected_s

@@ -3,12 +3,12 @@
 
 use core::f64::consts::TAU;
 
-/// A scene file, and its electric friction.
+/// A scene, and its electric friction as a function of place.
 pub struct Formula {
     /// Name of the formula.
     pub name: &'static str,
-    /// The layers of the scene file, on the example screen.
-    pub words: &'static str,
+    /// The layers of the scene as TOML, on the example screen.
+    pub toml: &'static str,
     /// Ends of the stroke on which the friction is compared, mm.
     pub stroke_mm: [(f64, f64); 2],
     /// Electric friction at a place in mm, mN.

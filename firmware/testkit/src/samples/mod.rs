@@ -52,7 +52,7 @@ pub struct CostCase {
     pub layer: Layer,
 }
 
-/// The name of the picture in the samples; [`with_picture`] replaces it.
+/// CRC-32 of the bitmap in the samples; [`with_bitmap_crc32`] replaces it.
 pub const PICTURE: u32 = 0xcbf4_3926;
 
 /// The points that the samples refer to: a curve of two points, and a triangle of three.
@@ -79,9 +79,9 @@ pub fn sample_records() -> impl Iterator<Item = &'static SampleRecord> + Clone {
     samples().flat_map(|sample| sample.records)
 }
 
-/// The layer, with the name of this picture if it is a bitmap.
+/// The layer, with this CRC-32 if it is a bitmap.
 #[must_use]
-pub const fn with_picture(mut layer: Layer, crc32: u32) -> Layer {
+pub const fn with_bitmap_crc32(mut layer: Layer, crc32: u32) -> Layer {
     if let Layer::Bitmap(bitmap) = &mut layer {
         bitmap.crc32 = crc32;
     }

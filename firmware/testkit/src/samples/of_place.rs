@@ -24,7 +24,7 @@ const CONSTANT: Sample = Sample {
     #[cfg(feature = "std")]
     formulas: &[Formula {
         name: "constant",
-        words: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.262\ngain = 1.5",
+        toml: "[[layer]]\nkind = \"constant\"\nfriction_n = 0.262\ngain = 1.5",
         stroke_mm: ACROSS,
         friction_mn: |_, _| 18.0,
         jumps: false,
@@ -87,7 +87,7 @@ const GRATING: Sample = Sample {
     formulas: &[
         Formula {
             name: "sine grating",
-            words: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\n\
+            toml: "[[layer]]\nkind = \"grating\"\nwavelength_mm = 5\nangle_deg = 30\nphase_deg = 45\n\
                     low_n = 0.002\nhigh_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, y| 2.0 + 20.0 * sine(along_deg(x, y, 30.0) / 5.0 + 0.125),
@@ -96,7 +96,7 @@ const GRATING: Sample = Sample {
         },
         Formula {
             name: "square grating",
-            words: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\n\
+            toml: "[[layer]]\nkind = \"grating\"\nwave = \"square\"\nduty = 0.3\nwavelength_mm = 10\n\
                     low_n = 0.002\nhigh_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, _| if turn(x / 10.0) < 0.3 { 22.0 } else { 2.0 },
@@ -105,7 +105,7 @@ const GRATING: Sample = Sample {
         },
         Formula {
             name: "triangle grating",
-            words: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\n\
+            toml: "[[layer]]\nkind = \"grating\"\nwave = \"triangle\"\nwavelength_mm = 6\nangle_deg = 90\n\
                     low_n = 0.002\nhigh_n = 0.022",
             stroke_mm: [(20.0, 5.0), (60.0, 75.0)],
             friction_mn: |_, y| 2.0 + 20.0 * (1.0 - (2.0 * turn(y / 6.0) - 1.0).abs()),
@@ -114,7 +114,7 @@ const GRATING: Sample = Sample {
         },
         Formula {
             name: "saw grating",
-            words: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\n\
+            toml: "[[layer]]\nkind = \"grating\"\nwave = \"saw\"\nwavelength_mm = 12\nlow_n = 0.002\n\
                     high_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, _| 2.0 + 20.0 * turn(x / 12.0),
@@ -209,7 +209,7 @@ const NOISE: Sample = Sample {
     #[cfg(feature = "std")]
     formulas: &[Formula {
         name: "noise",
-        words: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\n\
+        toml: "[[layer]]\nkind = \"noise\"\nseed = 20260\nwavelength_min_mm = 4\nwavelength_max_mm = 12\n\
                 low_n = 0.002\nhigh_n = 0.026",
         stroke_mm: ACROSS,
         friction_mn: |x, y| 2.0 + 24.0 * noise(20260, 4.0, 12.0, x, y),
@@ -253,7 +253,7 @@ const RINGS: Sample = Sample {
     formulas: &[
         Formula {
             name: "rings",
-            words: "[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 6\nlow_n = 0.002\n\
+            toml: "[[layer]]\nkind = \"rings\"\nx_mm = 50\ny_mm = 20\nwavelength_mm = 6\nlow_n = 0.002\n\
                     high_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, y| 2.0 + 20.0 * sine((x - 50.0).hypot(y - 20.0) / 6.0),
@@ -262,7 +262,7 @@ const RINGS: Sample = Sample {
         },
         Formula {
             name: "square rings",
-            words: "[[layer]]\nkind = \"rings\"\nwave = \"square\"\nduty = 0.3\nx_mm = 50\ny_mm = 20\n\
+            toml: "[[layer]]\nkind = \"rings\"\nwave = \"square\"\nduty = 0.3\nx_mm = 50\ny_mm = 20\n\
                     wavelength_mm = 10\nlow_n = 0.002\nhigh_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, y| if turn((x - 50.0).hypot(y - 20.0) / 10.0) < 0.3 { 22.0 } else { 2.0 },
@@ -310,7 +310,7 @@ const SPOKES: Sample = Sample {
     formulas: &[
         Formula {
             name: "spokes",
-            words: "[[layer]]\nkind = \"spokes\"\nx_mm = 50\ny_mm = 20\nnumber = 24\nangle_deg = 10\nlow_n = 0.002\n\
+            toml: "[[layer]]\nkind = \"spokes\"\nx_mm = 50\ny_mm = 20\nnumber = 24\nangle_deg = 10\nlow_n = 0.002\n\
                     high_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, y| 2.0 + 20.0 * sine(24.0 * ((y - 20.0).atan2(x - 50.0) / TAU - 10.0 / 360.0)),
@@ -319,7 +319,7 @@ const SPOKES: Sample = Sample {
         },
         Formula {
             name: "saw spokes across their middle",
-            words: "[[layer]]\nkind = \"spokes\"\nwave = \"saw\"\nx_mm = 60\ny_mm = 37.5\nnumber = 40\n\
+            toml: "[[layer]]\nkind = \"spokes\"\nwave = \"saw\"\nx_mm = 60\ny_mm = 37.5\nnumber = 40\n\
                     low_n = 0.002\nhigh_n = 0.022",
             stroke_mm: ACROSS,
             friction_mn: |x, y| {

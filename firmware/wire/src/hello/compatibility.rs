@@ -56,7 +56,7 @@ impl fmt::Display for Mismatch {
             }
             Self::FramesTooShort { max } => write!(
                 f,
-                "the board takes frames of {max} bytes at most, this program sends {FRAME_MAX_LEN}: flash newer \
+                "the board accepts frames of at most {max} bytes, and this program sends {FRAME_MAX_LEN}: flash newer \
                  firmware"
             ),
         }

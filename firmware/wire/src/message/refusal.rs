@@ -286,8 +286,7 @@ impl fmt::Display for Refusal {
             Self::NoScene => f.write_str("the board holds no scene: upload and commit one first"),
             Self::UploadIncomplete { next_chunk } => write!(
                 f,
-                "no upload is complete: the board waits for chunk {next_chunk}, continue there or start the upload \
-                 again"
+                "no upload is complete: the board expects chunk {next_chunk}; continue there or start the upload again"
             ),
             Self::CrcMismatch { expected, found } => {
                 write!(
@@ -296,11 +295,11 @@ impl fmt::Display for Refusal {
                 )
             }
             Self::SceneTooLarge { len, max } => {
-                write!(f, "the scene has {len} bytes, the board takes {max}: use fewer layers")
+                write!(f, "the scene has {len} bytes, and the board accepts {max}: use fewer layers")
             }
             Self::BitmapPoolFull { len, free } => write!(
                 f,
-                "the bitmap has {len} bytes, the board has {free} free: use a smaller picture or a coarser pitch"
+                "the bitmap has {len} bytes, and the board has {free} free: use a smaller picture or a coarser pitch"
             ),
             Self::BitmapMissing { crc32 } => {
                 write!(f, "the scene uses bitmap {crc32:#010x}, which the board does not hold: upload it first")
@@ -322,16 +321,16 @@ impl fmt::Display for Refusal {
             Self::TouchSource => f.write_str("the board has a touch source of its own: send it no touch reports"),
             Self::NoSuchLayer { layer, layers } => write!(
                 f,
-                "the playing scene has no layer {layer} (counted from 0), it has {layers}: name one of those, or \
-                 commit the scene that is meant"
+                "the playing scene has no layer {layer} (counted from 0); it has {layers}: use one of those, or commit \
+                 the intended scene"
             ),
             Self::NoStreamLayer => {
                 f.write_str("no layer of the playing scene is a stream: add one to the scene, or send no samples")
             }
             Self::TooCostly { cycles, cycles_max, x_m, y_m } => fmt_too_costly(f, cycles, cycles_max, [x_m, y_m]),
             Self::LayersFixed => f.write_str(
-                "the playing scene declares its layers fixed: set `live = true` in those that are to change, and \
-                 commit it again",
+                "the playing scene declares its layers fixed: set `live = true` in the layers to change, and commit it \
+                 again",
             ),
             Self::OptionBytes => f.write_str(
                 "the processor's option bytes do not allow the board to drive: switch the amplifier off, run \

@@ -76,12 +76,14 @@ pub enum WriteError {
 impl fmt::Display for WriteError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooLong => write!(f, "a payload is longer than the {PAYLOAD_MAX_LEN} bytes that a frame takes"),
+            Self::TooLong => write!(f, "a payload is longer than the {PAYLOAD_MAX_LEN} bytes that a frame holds"),
             Self::ChunkNumber { number } => {
                 write!(f, "chunk {number} is beyond {CHUNK_NUMBER_MAX}, the last that an upload can have: upload less")
             }
-            Self::ChunkLength { len } => write!(f, "a chunk takes 1 to {CHUNK_LEN} bytes, this one has {len}"),
-            Self::SampleCount { count } => write!(f, "a frame takes 1 to {SAMPLES_MAX} samples, {count} were given"),
+            Self::ChunkLength { len } => write!(f, "a chunk holds 1 to {CHUNK_LEN} bytes, and this one has {len}"),
+            Self::SampleCount { count } => {
+                write!(f, "a frame holds 1 to {SAMPLES_MAX} samples, and {count} were given")
+            }
         }
     }
 }

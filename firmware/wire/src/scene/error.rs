@@ -113,13 +113,14 @@ impl fmt::Display for SceneError {
             Self::TooManyPoints { found } => {
                 write!(
                     f,
-                    "the scene has {found} points, {POINTS_MAX} are the most: draw its polygons with fewer vertices"
+                    "the scene has {found} points, more than the {POINTS_MAX} allowed: draw its polygons with fewer \
+                     vertices"
                 )
             }
             Self::Points { record, first, count } => write!(
                 f,
-                "layer {record} (the first is 0) names {count} points from point {first} on: a polygon takes 3 to \
-                 {POLYGON_POINTS_MAX} that the scene has, a curve of speed 2 to {CURVE_POINTS_MAX}"
+                "layer {record} (the first is 0) uses {count} points from point {first} on: a polygon has 3 to \
+                 {POLYGON_POINTS_MAX} of the scene's points, a curve of speed 2 to {CURVE_POINTS_MAX}"
             ),
             Self::ButtonRegion { record } => {
                 write!(
@@ -128,7 +129,7 @@ impl fmt::Display for SceneError {
                 )
             }
             Self::UnknownFlags(flags) => {
-                write!(f, "the scene has flags {flags:#04x}, of which not all are known: flash newer firmware")
+                write!(f, "the scene has flags {flags:#04x}, some of them unknown: flash newer firmware")
             }
             Self::NotZero { record, offset } => {
                 match record {

@@ -95,7 +95,7 @@ impl Process {
         let _ = self.child.wait();
         match self.last_errors() {
             Ok(output) => EmulatorError::ended(output),
-            Err(error) => EmulatorError::system("reading what the emulator says")(error),
+            Err(error) => EmulatorError::system("reading the emulator's output")(error),
         }
     }
 

@@ -35,7 +35,7 @@ pub enum PortError {
         port: String,
     },
     /// Any other refusal by the operating system.
-    #[error("{port} does not open as a serial port: {reason}; check the path, and plug the board in again")]
+    #[error("{port} cannot be opened as a serial port: {reason}; check the path, and plug the board in again")]
     NotOpened {
         /// Path of the port.
         port: String,

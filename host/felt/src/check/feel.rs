@@ -86,8 +86,8 @@ fn elements(layer: &LayerVerdict) -> impl Iterator<Item = Finding> {
 }
 
 fn click_text(layer: &LayerVerdict, click: &Step) -> String {
-    let cut_off = if layer.is_click_cut_off { ", clamped to the most that the drive can give" } else { "" };
-    format!("{}{cut_off}", step_text(click, ""))
+    let clamped = if layer.is_click_clamped { ", clamped to the most that the drive can give" } else { "" };
+    format!("{}{clamped}", step_text(click, ""))
 }
 
 /// Elements with the same perception.

@@ -138,7 +138,7 @@ impl LongestTick {
 pub struct CheckedFinger {
     /// Title of the finger.
     pub title: String,
-    /// `assumed`, `perceptual`, `empirical` or `measured`, on the screen that the scene is compiled for.
+    /// `assumed`, `perceptual`, `measured` or `empirical`, on the screen that the scene is compiled for.
     pub origin: &'static str,
 }
 

@@ -49,7 +49,7 @@ pub struct LayerVerdict {
     /// The initial step of the layer's click.
     pub click: Option<Step>,
     /// Whether the drive clamps the click.
-    pub is_click_cut_off: bool,
+    pub is_click_clamped: bool,
     /// Mean friction inside the layer where no other layer is above; absent for narrow layers.
     #[serde(skip)]
     pub level: Option<Level>,
@@ -92,7 +92,7 @@ impl LayerVerdict {
                 period_ms: 1e3 * f64::from(burst.period_s),
             }),
             click: None,
-            is_click_cut_off: false,
+            is_click_clamped: false,
             level: None,
             is_flat: false,
             scene: SceneFeel { layer: element.layer, contrast, texture: None, visible: 1 << element.layer },

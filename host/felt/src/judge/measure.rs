@@ -71,7 +71,7 @@ pub(super) struct Measured {
 pub(super) struct Click {
     pub(super) step: Step,
     /// Whether the drive clamps it.
-    pub(super) is_cut_off: bool,
+    pub(super) is_clamped: bool,
 }
 
 /// Contrasts of the scene.
@@ -324,8 +324,8 @@ impl<'e> Measure<'e> {
         let [from_n, to_n] = largest_n.map(within_n);
         let above_n = from_n - program.reach.natural_friction_n;
         let step = Step::new(natural_n + above_n, natural_n + above_n + likeness.slope().min(1.0) * (to_n - from_n));
-        let is_cut_off = size_n(largest_n) - (to_n - from_n).abs() > 1e-6;
-        Some(Click { step, is_cut_off })
+        let is_clamped = size_n(largest_n) - (to_n - from_n).abs() > 1e-6;
+        Some(Click { step, is_clamped })
     }
 }
 

@@ -184,7 +184,7 @@ fn of_plays(element: &Element, over: Over, plays: &[PlayPerception]) -> LayerVer
         texture,
         border,
         click: click.map(|click| click.step),
-        is_click_cut_off: click.is_some_and(|click| click.is_cut_off),
+        is_click_clamped: click.is_some_and(|click| click.is_clamped),
         level,
         is_flat: scene.sharp.weber_steps.abs() < FLAT_WEBER_STEPS,
         scene: SceneFeel {

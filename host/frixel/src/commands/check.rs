@@ -72,7 +72,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     let mut check = SceneCheck::of(&program, &rig.board.limits, &costs, judgement);
     check.notes.extend(files.outside().map(|path| {
         let path = printable(&path.display().to_string()).into_owned();
-        format!("{path} is outside of the scene's folder: give it along with the scene")
+        format!("{path} is outside the scene's folder: give it along with the scene")
     }));
     let mut check = if args.image { check.with_board(&program, rig.board.kind) } else { check };
     let board_lines = board.map(|board| board_line(&board, &program, verdict(&board, &program))).unwrap_or_default();
@@ -98,7 +98,7 @@ fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
 fn verdict(board: &Board, program: &Program) -> &'static str {
     let allowed_v_peak = board.never_measured_v_peak().unwrap_or(f32::INFINITY);
     if program.header.voltage_max_v_peak > allowed_v_peak {
-        "refuses it as it is, and would take it once limits are stored"
+        "refuses it for now, and would accept it once limits are stored"
     } else {
         "takes it"
     }
@@ -109,7 +109,7 @@ fn print_draft(scene: &Scene, rig: &RigConfig, world: &WorldOptions) -> Result<(
     let draft = compile_draft(scene, &rig.board.limits, rig.board.tick_hz)?;
     let judgement = judge(&draft, rig, world, Advice::Omitted, TO_THE_END);
     let felt = feel::text(&feel::lines(&judgement.map_err(of_simulation)?));
-    print(board_line(&rig.board, &draft, "refuses it; what follows is clamped to what it can give") + &felt)
+    print(board_line(&rig.board, &draft, "refuses it; the results below are clamped to its limits") + &felt)
 }
 
 /// The board, its voltage at the scene's carrier, and the friction of the scene's finger at that voltage.

@@ -19,7 +19,12 @@ pub(crate) fn at<E: Display>(subject: impl Display) -> impl FnOnce(E) -> anyhow:
 
 /// Converts an error of reading `path`, for use in `map_err`.
 pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> anyhow::Error {
-    move |error| anyhow!("{} cannot be read ({error}): {}", path.display(), check_path(path, "check the path"))
+    unreadable(path, check_path(path, "check the path"))
+}
+
+/// Like [`reading`], with its own advice.
+pub(crate) fn unreadable(path: &Path, advice: impl Display) -> impl FnOnce(io::Error) -> anyhow::Error {
+    move |error| anyhow!("{} cannot be read ({error}): {advice}", path.display())
 }
 
 /// Converts the error that ended a play on the board named by `--port`.
@@ -38,9 +43,9 @@ pub(crate) fn of_simulation(error: SimulationError) -> anyhow::Error {
     }
 }
 
-/// Converts the error of a finger that the contact model rejects.
+/// Converts the error of a finger that the contact model refuses.
 pub(crate) fn of_finger(error: ParameterError) -> anyhow::Error {
-    at("the contact model rejects the scene's finger")(error)
+    at("the contact model refuses the scene's finger")(error)
 }
 
 /// Converts the error of a screen on which no stroke can be generated.

@@ -108,6 +108,6 @@ fn judge(summary: &Summary) -> Result<()> {
     }
     match summary.invalid_rows {
         0 => Ok(()),
-        invalid => bail!("{} no answer; the column `status` says why", rows(invalid)),
+        invalid => bail!("{} no answer; the column `status` gives the reason", rows(invalid)),
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<
 /// Lists what `--port` accepts, and suggests the closest name.
 fn advice(port: &str, boards: &[&str]) -> String {
     let words = if boards.is_empty() { String::new() } else { format!("`{}` or ", boards.join("`, `")) };
-    let takes = format!("--port takes {words}the path of a board's serial port");
+    let takes = format!("--port expects {words}the path of a board's serial port");
     match Nearest::new(port, Target::names()).suggestion {
         Some(board) if boards.contains(&board.as_str()) => format!("{takes}; did you mean `{board}`?"),
         Some(board) if board == "sim" => format!("{takes} here: start `frixel sim`, and give the port that it prints"),

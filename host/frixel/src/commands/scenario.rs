@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, bail};
 #[cfg(unix)]
 use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
 use frixel_hil_sim::{Board, RigConfig};
@@ -11,12 +11,11 @@ use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
 use frixel_lab::simulate::screen_m;
 use frixel_scene::{Scenario, Scene};
 
-use super::error::at;
+use super::error::{at, reading};
 use crate::input;
 #[cfg(unix)]
 use crate::rigs::EmulatedRig;
 use crate::scene_file::load;
-use frixel_lab::input::check_path;
 
 use super::stroke::note_off_screen;
 use super::target::Target;
@@ -89,10 +88,7 @@ fn print(outcome: &ScenarioOutcome) -> Result<()> {
 }
 
 fn read(file: &Path) -> Result<Scenario> {
-    let bytes = input::read_toml(file).map_err(|error| {
-        let advice = check_path(file, "check the path");
-        anyhow!("{}: this scenario cannot be read ({error}): {advice}", file.display())
-    })?;
+    let bytes = input::read_toml(file).map_err(reading(file))?;
     Ok(Scenario::parse(bytes, &file.display().to_string())?)
 }
 

@@ -101,7 +101,7 @@ fn trial_plan(args: &ScoreArgs) -> Result<TrialPlan> {
         None => TrialStroke::Own(stroke::from_file(Path::new(&args.stroke))?),
     };
     if let (Some(found), false) = (args.strokes, stroke.is_of_people()) {
-        bail!("--strokes {found} counts human strokes, and there is one of {}: leave --strokes out", args.stroke);
+        bail!("--strokes {found} is for human strokes, and there is only one of {}: leave --strokes out", args.stroke);
     }
     Ok(TrialPlan {
         stroke,

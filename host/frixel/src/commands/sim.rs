@@ -49,7 +49,7 @@ pub(super) fn run(args: &SimArgs) -> Result<()> {
     let server = Server::open(&args.out, &inputs, tick_hz, tick_hz / ROWS_HZ)?;
     print_line(format_args!("port: {}", server.path()))?;
     let path = server.path();
-    note(format_args!("a virtual board is there until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
+    note(format_args!("a virtual board runs until Ctrl-C; in another terminal: frixel play SCENE --port {path}"));
     let dropped = server.run(&mut rig, &|| interrupt.goes_on())?;
     if dropped.times > 0 {
         let Dropped { seconds, times } = dropped;

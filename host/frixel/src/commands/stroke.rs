@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::error::{at, of_generated_stroke, reading};
+use super::error::{at, of_generated_stroke, reading, unreadable};
 use crate::input;
 use anyhow::{Result, anyhow};
 use clap::Args;
@@ -123,16 +123,16 @@ pub(super) fn of_stroke_options(error: StrokeOptionsError) -> anyhow::Error {
 }
 
 /// The error of a stroke that cannot be read. Without a file extension, it may be a mistyped name.
-fn unreadable(path: &Path, error: io::Error) -> anyhow::Error {
+fn of_unreadable(path: &Path, error: io::Error) -> anyhow::Error {
     let name = path.to_str().filter(|_| path.extension().is_none() && error.kind() == io::ErrorKind::NotFound);
     match name.and_then(|name| Nearest::new(name, GeneratedStroke::names()).suggestion) {
-        Some(name) => anyhow!("{} cannot be read ({error}): did you mean `{name}`?", path.display()),
+        Some(name) => unreadable(path, format_args!("did you mean `{name}`?"))(error),
         None => reading(path)(error),
     }
 }
 
 pub(super) fn from_file(path: &Path) -> Result<Stroke> {
-    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(|error| unreadable(path, error))?;
+    let bytes = input::read(path, input::CSV_MAX_BYTES).map_err(|error| of_unreadable(path, error))?;
     note_interrupted(path, &bytes);
     let file = StrokeFile::read(bytes.as_slice()).map_err(at(path.display()))?;
     let StrokeFile { stroke, ignored_columns, understood } = file;

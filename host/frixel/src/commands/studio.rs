@@ -13,6 +13,7 @@ use clap::Args;
 
 use crate::input;
 
+use super::error::unreadable;
 use super::terminal::{note, print_line};
 
 /// The page beside the command, in the folder that `cargo xtask dist` makes.
@@ -83,10 +84,7 @@ fn page(args: &StudioArgs) -> Result<PathBuf> {
         page_of_checkout(&env::current_dir().context(NO_PAGE)?, env::var_os("CARGO_TARGET_DIR"))?
     };
     let path = input::open(&page, u64::MAX).and_then(|_| fs::canonicalize(&page));
-    let page = page.display();
-    path.map_err(|error| {
-        anyhow!("{page} cannot be read ({error}): give --page the file that `cargo xtask studio` prints")
-    })
+    path.map_err(unreadable(&page, "give --page the file that `cargo xtask studio` prints"))
 }
 
 /// The page in the folder of a program.
@@ -101,14 +99,15 @@ fn page_of_checkout(here: &Path, target: Option<OsString>) -> Result<PathBuf> {
     let page = checkout.join(target.unwrap_or_else(|| TARGET.into())).join(BUILT_PAGE);
     let built = fs::metadata(&page).and_then(|page| page.modified()).map_err(|_| {
         anyhow!(
-            "{} is not there: run `cargo xtask studio` in {}, which builds it; it needs the target \
-             wasm32-unknown-unknown (`rustup target add wasm32-unknown-unknown`), and takes some minutes the first time",
+            "{} does not exist: run `cargo xtask studio` in {} to build it; that needs the target \
+             wasm32-unknown-unknown (`rustup target add wasm32-unknown-unknown`), and takes some minutes the first \
+             time",
             page.display(),
             checkout.display()
         )
     })?;
     if SOURCES.iter().any(|folder| has_newer(&checkout.join(folder), built)) {
-        note(format_args!("frixel: this page is older than its sources: `cargo xtask studio` builds it anew"));
+        note(format_args!("frixel: this page is older than its sources: run `cargo xtask studio` to rebuild it"));
     }
     Ok(page)
 }

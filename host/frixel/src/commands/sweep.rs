@@ -15,7 +15,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use super::argument::shard;
-use super::error::{at, reading};
+use super::error::{at, reading, unreadable};
 use super::jobs::JobsArgs;
 use super::terminal::{note, print_line};
 use crate::input;
@@ -68,8 +68,7 @@ pub(super) fn run(args: &SweepArgs) -> Result<()> {
 }
 
 fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
-    let text = input::read_toml(plan_path);
-    let text = text.map_err(|error| unreadable(plan_path, "plan", &error, "check the path"))?;
+    let text = input::read_toml(plan_path).map_err(reading(plan_path))?;
     let plan = Plan::parse(&text, &plan_path.display().to_string())?;
     let folder = plan_path.parent().unwrap_or(Path::new(""));
     let files = plan.scenes.iter().chain(&plan.screens).chain(&plan.touch).map(|name| folder.join(name));
@@ -90,7 +89,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     }
     let own = OutputFile::new(&out.join(format!("{CELLS}/{part}-of-{parts}.{LINES}")), "-o", &inputs)?;
     let path = own.path().display();
-    let waits = || note(format_args!("frixel: another process writes {path}: waiting until it ends"));
+    let waits = || note(format_args!("frixel: another process is writing {path}: waiting until it ends"));
     let writer = own.append(|line| there.extend(result(line).map(|result| result.cell)), waits)?;
     let writer = Mutex::new(writer);
     let play = |number: usize| {
@@ -128,7 +127,7 @@ fn gather(plan: Plan, folder: &Path) -> Result<Sweep> {
     let text = |kind: FileKind, name: &str| {
         let path = folder.join(name);
         let advice = "give its file, from the plan's folder, or a bundled one";
-        let bytes = input::read_toml(&path).map_err(|error| unreadable(&path, kind.word(), &error, advice))?;
+        let bytes = input::read_toml(&path).map_err(unreadable(&path, advice))?;
         Ok(kind.text(&bytes, name)?.to_owned())
     };
     Sweep::new(plan, |name| Ok(gathered(&folder.join(name), name)?), text)
@@ -156,8 +155,7 @@ fn result(line: &[u8]) -> Option<CellResult> {
 fn merge(out: &Path, inputs: &Inputs) -> Result<()> {
     let path = out.join(INDEX);
     let advice = "give the folder of a sweep, which `frixel sweep PLAN.toml -o OUT` makes";
-    let text = input::read(&path, input::CSV_MAX_BYTES);
-    let text = text.map_err(|error| unreadable(&path, "list of the cells of a sweep", &error, advice))?;
+    let text = input::read(&path, input::CSV_MAX_BYTES).map_err(unreadable(&path, advice))?;
     let index: Index = serde_json::from_slice(&text).map_err(|error| {
         anyhow!("{} is not a list of the cells of a sweep ({error}): play the sweep again", path.display())
     })?;
@@ -185,8 +183,4 @@ fn merge(out: &Path, inputs: &Inputs) -> Result<()> {
         print_line(format_args!("  {:<30} {}", "wrote", file.path().display()))?;
     }
     Ok(())
-}
-
-fn unreadable(path: &Path, what: &str, error: &io::Error, advice: &str) -> anyhow::Error {
-    anyhow!("{}: this {what} cannot be read ({error}): {advice}", path.display())
 }

@@ -25,7 +25,8 @@ pub(crate) struct Report {
     pub board_refuses: Vec<String>,
     /// Whether finger or board is simulated.
     pub simulated: bool,
-    /// The simulated world, `realistic`, `without-leakage` or `ideal`, each with `-mean-square` if friction follows it.
+    /// The simulated world, `realistic`, `without-leakage` or `ideal`, with the suffix `-mean-square` if friction
+    /// follows the mean squared voltage.
     pub world: Option<Effects>,
     /// The simulated touch source.
     pub touch_source: Option<TouchSource>,
@@ -51,7 +52,7 @@ pub(crate) struct Report {
     pub load_mismatch_max_n: Option<f64>,
     /// Felt friction minus its mean over a carrier period: root mean square, N.
     pub carrier_ripple_rms_n: Option<f64>,
-    /// Origin of the finger's numbers: `assumed`, `perceptual`, `empirical` or `measured`.
+    /// Origin of the finger's numbers: `assumed`, `perceptual`, `measured` or `empirical`.
     pub finger_origin: &'static str,
     /// Total friction at zero voltage, N.
     pub reachable_min_n: f64,

@@ -11,7 +11,7 @@ const OFF_PART_MIN: f64 = 0.1;
 pub(super) const OFF_REASONS: [(Flags, &str); 5] = [
     (Flags::HOST_SILENT, "the host is silent"),
     (Flags::TOUCH_STALE, "the touch reports are too old"),
-    (Flags::NO_FINGER, "the board knows of no finger: touch reports are late or lost"),
+    (Flags::NO_FINGER, "no finger is reported to the board: touch reports are late or lost"),
     (Flags::STILL, "the finger stands still"),
     (Flags::STREAM_DRY, "the stream has no samples"),
 ];

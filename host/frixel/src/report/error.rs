@@ -16,7 +16,7 @@ pub(crate) enum ReportError {
     #[error(transparent)]
     Output(#[from] frixel_files::Error),
     /// The file with instruction counts could not be read.
-    #[error("{} cannot be read ({source}): `cargo xtask bench` writes such a file", .path.display())]
+    #[error("{} cannot be read ({source}): run `cargo xtask bench` to create one", .path.display())]
     ReadBench { path: PathBuf, source: io::Error },
     /// The file with instruction counts has the wrong format.
     #[error("{}: expected a JSON object of numbers as `cargo xtask bench` writes it, found {source}", .path.display())]

@@ -19,13 +19,13 @@ const STOPPED_AFTER: Duration = Duration::from_mins(2);
 /// steps of a millisecond, and a busy machine takes longer for either.
 const LATENESS_TICKS: u64 = 800;
 
-/// An emulated board with a host's end of its serial port, on a clock that follows the board's ticks.
+/// An emulated board and the host's end of its serial port, on a clock that follows the board's ticks.
 ///
 /// The clock stands still while bytes are on their way to the board, because the speed at which the emulator transfers
 /// them depends on the load of the machine. The board's own clock stands still until this host has completed the
 /// current slice of time: sent the pings that are due in it, and confirmed that everything sent has arrived. Otherwise
 /// the board would run into the host timeout whenever a busy machine does not run the host. If the rig is dropped, or
-/// the host hangs for 10 s, the board runs on, and the host timeout acts.
+/// the host hangs for 10 s, the board keeps running, and its host timeout fires.
 pub struct EmulatedRig<'b> {
     serial: SerialLink,
     board: &'b LinkBoard,

@@ -29,7 +29,7 @@ const NO_SCENE: &str = "version = 1\n[[layer]]\nkind = \"constant\"\nfriction_fr
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The scene file itself could not be read.
-    #[error("{file}: this scene file cannot be read ({source}): {}", scene_advice(file))]
+    #[error("{file} cannot be read ({source}): {}", scene_advice(file))]
     Unreadable {
         /// Path of the scene file, as the caller gave it.
         file: String,
@@ -37,7 +37,7 @@ pub enum SceneFileError {
         source: io::Error,
     },
     /// The file of a finger, a screen or a touch source could not be read.
-    #[error("{file}: this {what} cannot be read ({source}): {}", profile_advice(.nearest, .file))]
+    #[error("{file} cannot be read ({source}): {}", profile_advice(what, .nearest, .file))]
     UnreadableProfile {
         /// `finger`, `screen` or `touch source`.
         what: &'static str,
@@ -77,11 +77,11 @@ fn scene_advice(file: &str) -> String {
 }
 
 /// Advice for a profile that cannot be read: the nearest name, or how to give one.
-fn profile_advice(nearest: &Nearest, file: &str) -> String {
+fn profile_advice(what: &str, nearest: &Nearest, file: &str) -> String {
     match &nearest.suggestion {
         Some(bundled) => format!("did you mean `{bundled}`?"),
         None if file.starts_with('~') => TILDE_ADVICE.to_owned(),
-        None => format!("give its file, or a bundled one: {}", nearest.known.join(", ")),
+        None => format!("give the file of a {what}, or a bundled one: {}", nearest.known.join(", ")),
     }
 }
 

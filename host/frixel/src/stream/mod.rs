@@ -34,7 +34,7 @@ pub enum StreamError {
         path: PathBuf,
     },
     /// A floating-point sample is not a number.
-    #[error("sample {index} of {} is not a number: export the file anew", path.display())]
+    #[error("sample {index} of {} is not a number: export the file again", path.display())]
     NotANumber {
         /// Path of the file.
         path: PathBuf,
@@ -42,9 +42,7 @@ pub enum StreamError {
         index: usize,
     },
     /// The sample rate is zero, or above the tick rate of the board.
-    #[error(
-        "a stream of {sample_hz} samples a second cannot be played: give 1 to {tick_hz}, the board's ticks a second"
-    )]
+    #[error("a sample rate of {sample_hz} Hz cannot be played: use 1 to {tick_hz} Hz, the board's tick rate")]
     Rate {
         /// Requested sample rate, in samples per second.
         sample_hz: u32,

@@ -62,7 +62,7 @@ fn floats_beyond_full_scale_are_noted() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("loud.wav");
     write(&path, spec(1, 1_000, 32, SampleFormat::Float), &[-1.0_f32, 1.0, 7.0, -1.5]);
-    assert_eq!(notes(&path), ["2 of 4 samples are beyond -1 to 1 and play as -1 or 1: export it less loud"]);
+    assert_eq!(notes(&path), ["2 of 4 samples are outside -1 to 1 and are clipped: export the file at a lower level"]);
 }
 
 #[test]

@@ -63,7 +63,9 @@ pub(super) fn read(path: &Path, max_hz: u32) -> Result<Wav, StreamError> {
         return Err(StreamError::Empty { path: path.to_owned() });
     }
     if beyond > 0 {
-        notes.push(format!("{beyond} of {frames} samples are beyond -1 to 1 and play as -1 or 1: export it less loud"));
+        notes.push(format!(
+            "{beyond} of {frames} samples are outside -1 to 1 and are clipped: export the file at a lower level"
+        ));
     }
     Ok(Wav { sample_hz: spec.sample_rate / together, samples, notes })
 }

@@ -52,7 +52,7 @@ pub fn all() -> Vec<Case> {
 /// The formulas of the samples, of kinds whose friction depends on the place alone.
 fn of_samples() -> Vec<Case> {
     let case = |formula: &Formula| {
-        let &Formula { name, words: layers, stroke_mm: [from, to], friction_mn, jumps, bound } = formula;
+        let &Formula { name, toml: layers, stroke_mm: [from, to], friction_mn, jumps, bound } = formula;
         Case { name, layers, path: Path::Steady(from, to), of_place: Some(friction_mn), jumps, bound, ..CASE }
     };
     samples().flat_map(|sample| sample.formulas).map(case).collect()

@@ -43,7 +43,10 @@ fn no_command_replaces_its_input_a_recording_or_a_protected_file() {
                 fs::remove_file(folder.path(&written)).unwrap();
             };
             folder.write(&written, of_a_person);
-            refused(&["is a recording of a person, which no result replaces: give", "has a play on a real board"]);
+            refused(&[
+                "is a recording of a person, and results do not overwrite it: give",
+                "has a play on a real board",
+            ]);
             if !output.input.is_empty() {
                 symlink(folder.path(output.input), folder.path(&written)).unwrap();
                 refused(&["is an input as well, and would be overwritten: give another "]);

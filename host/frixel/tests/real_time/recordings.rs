@@ -55,7 +55,7 @@ fn a_recording_that_ends_early_leaves_its_rows_which_the_next_one_names_and_fini
         let rows = text(&folder, "me.csv.partial");
         assert!(rows.ends_with('\n') && rows.lines().all(|row| row.split(',').count() == 3), "whole rows");
         let says = "me.csv.partial has the rows of a recording that was cut off: add --finish to keep them, or record \
-                    anew with --overwrite";
+                    again with --overwrite";
         expect_refused(&folder, &format!("board record --port {} -o me.csv --seconds 0.3", board.port), says);
         // A part of a row, as a process that was killed may leave one.
         fs::write(folder.path().join("me.csv.partial"), rows.clone() + "9.1234").unwrap();
@@ -76,7 +76,7 @@ fn rows_that_may_be_replaced_stay_until_there_are_new_ones() {
     for name in ["me.csv", "me.csv.partial"] {
         fs::write(folder.path().join(name), ROWS).unwrap();
     }
-    let says = "me.csv already exists, and a recording is not replaced: give another name to -o, or add --overwrite";
+    let says = "me.csv already exists, and recordings are not overwritten: give another name to -o, or add --overwrite";
     expect_refused(&folder, &format!("board record --port {} -o me.csv", board.port), says);
     for port in [format!("{} --seconds 0.3", board.port), "nowhere".to_owned()] {
         expect_refused(&folder, &format!("board record --port {port} -o me.csv --overwrite"), "");

@@ -44,7 +44,7 @@ pub enum CalibrationError {
     /// The file of the board's telemetry cannot be read.
     #[error("the board's telemetry cannot be read ({}): its file was changed", .0.found())]
     Board(TableError),
-    /// The forces are none of this run, or cannot be joined with it.
+    /// The forces are not from this run, or cannot be joined with it.
     #[error("{0}")]
     Refused(String),
     /// The recording cannot be written.
@@ -83,8 +83,8 @@ pub fn read_forces(mut input: impl Read) -> Result<Reading<Vec<ForceRow>>, Calib
             .find(|(_, force_n)| force_n.abs() > FORCE_MAX_N)
         {
             return Err(CalibrationError::Refused(format!(
-                "row {}, column {}: {found_n} N is no force of a finger: give newtons, at most 50, or name the column \
-                 normal_force_mn or friction_mn if it is in millinewtons",
+                "row {}, column {}: {found_n} N is not a valid force of a finger: give newtons, at most 50, or name \
+                 the column normal_force_mn or friction_mn if it is in millinewtons",
                 row.number(),
                 row.column(place)
             )));
@@ -140,7 +140,7 @@ fn board_rows(input: impl Read) -> Result<Vec<BoardRow>, TableError> {
     Ok(rows)
 }
 
-/// Writes a recording as CSV; of a simulated finger, with a column that says so.
+/// Writes a recording as CSV, with a column that marks a simulated finger.
 pub fn write_csv(output: impl Write, rows: &[Row]) -> Result<(), CalibrationError> {
     let mut writer = csv::Writer::from_writer(output);
     for row in rows {

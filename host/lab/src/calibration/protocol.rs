@@ -18,7 +18,7 @@ const MARKER: [bool; 13] = [true, true, true, true, true, false, false, true, tr
 const MARKER_ELEMENT_S: f64 = 0.04;
 /// When the marker begins in the first stroke, in seconds: the finger slides by then.
 const MARKER_START_S: f64 = 0.3;
-/// Samples of the drive a second.
+/// Samples of the drive per second.
 const SAMPLE_HZ: u32 = 4_000;
 /// Places of the simulated finger a second.
 const PLACE_HZ: f64 = 250.0;
@@ -29,7 +29,7 @@ const BOARD_GAP_M: f64 = 100e-6;
 const BOARD_LOAD_N: f64 = 0.5;
 /// Highest voltage in a calibration or an experiment with a person, V rms.
 pub const VOLTAGE_MAX_V_RMS: f64 = 150.0;
-/// Part of the highest voltage's friction that calibrations and experiments ask for, so that rounding stays within
+/// Fraction of the highest voltage's friction that calibrations and experiments request, so that rounding stays within
 /// reach.
 pub const REACH: f64 = 0.999;
 
@@ -68,12 +68,12 @@ impl Protocol {
         self.strokes as f64 * (self.stroke_s + self.pause_s)
     }
 
-    /// Samples of the drive a second.
+    /// Samples of the drive per second.
     pub fn sample_hz(&self) -> u32 {
         SAMPLE_HZ
     }
 
-    /// The plan in words, a line each.
+    /// The plan as text, one line per item.
     pub fn words(&self) -> String {
         let voltages: Vec<String> = self.voltages_v_rms.iter().map(|volts| format!("{volts:.0}")).collect();
         let mut text = format!(
@@ -151,7 +151,7 @@ impl Protocol {
         ))
     }
 
-    /// Where the simulated finger goes: strokes of minimum jerk, back and forth.
+    /// Path of the simulated finger: strokes of minimum jerk, back and forth.
     pub fn stroke(&self) -> Result<Stroke, StrokeError> {
         let period_s = self.stroke_s + self.pause_s;
         let place = |step: u32| {

@@ -16,8 +16,7 @@ pub fn simulated_finger(seed: Option<u64>, coating_gap_m: f64) -> Result<OwnFing
     Ok(OwnFinger { law: contact?.into(), fingertip: FingertipConfig::REALISTIC })
 }
 
-/// The seed of what is random in the simulation of a person: two people with one `--seed` do not share their noise and
-/// the wander of their load.
+/// Seed of a person's simulation: two people with the same `--seed` differ in noise and load drift.
 pub fn simulation_seed(seed: u64, finger_seed: Option<u64>) -> u64 {
     // The odd factor (2^64 over the golden ratio) keeps people apart from neighbouring seeds.
     finger_seed.map_or(seed, |finger| seed ^ finger.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(32))

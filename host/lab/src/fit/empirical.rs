@@ -29,14 +29,21 @@ pub struct EmpiricalFit {
     pub law: VoltageLaw,
     /// The highest voltage of the data, where the law ends, and its electric friction.
     pub highest: MeasuredPoint,
-    /// Root mean square error of electric friction in held-out strokes, and its mean, in newtons.
-    ///
-    /// `None` for means, and if a fit without one stroke does not converge.
-    pub held_out_n: Option<(f64, f64)>,
+    /// Prediction of the held-out strokes. `None` for means, and if a fit without one stroke does not converge.
+    pub held_out: Option<HeldOutError>,
     /// Number of strokes, or of means.
     pub strokes: usize,
     /// The data, and the load at which this holds.
     pub data: DataSummary,
+}
+
+/// Prediction error of electric friction in held-out strokes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOutError {
+    /// Root mean square error, in newtons.
+    pub rms_n: f64,
+    /// Mean electric friction of the strokes, in newtons.
+    pub mean_friction_n: f64,
 }
 
 /// How electric friction grows up to the highest voltage of the data.
@@ -63,7 +70,7 @@ pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Re
     let fitted = FittedData::of(data, settings, goes_on)?;
     let friction_coefficient = fitted.friction_coefficient(|replicate| &replicate.power)?;
     let strokes = results(&fitted.strokes, &fitted.fitted.best.power).ok_or(FitError::NotConverged)?;
-    let (law, highest, held_out_n) = match power_law(&fitted, &strokes) {
+    let (law, highest, held_out) = match power_law(&fitted, &strokes) {
         Err(FitError::NoPowerLaw(_)) if fitted.data.division != Division::Means => {
             points(&fitted, &strokes, &friction_coefficient)?
         }
@@ -72,10 +79,10 @@ pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Re
     let FittedData { data, settling_error, .. } = fitted;
     verdict::check_estimates(&data, &strokes, &friction_coefficient, &highest.electric_friction_n)?;
     sensor::check_settling_error(settling_error)?;
-    Ok(EmpiricalFit { friction_coefficient, law, highest, held_out_n, strokes: strokes.len(), data })
+    Ok(EmpiricalFit { friction_coefficient, law, highest, held_out, strokes: strokes.len(), data })
 }
 
-type Law = (VoltageLaw, MeasuredPoint, Option<(f64, f64)>);
+type Law = (VoltageLaw, MeasuredPoint, Option<HeldOutError>);
 
 /// The power law of the data. Fails if their means at a voltage deviate from it.
 fn power_law(fitted_data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, FitError> {
@@ -88,8 +95,8 @@ fn power_law(fitted_data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, 
     let exponent = fitted.estimate(|replicate| replicate.power.attraction.voltage_exponent())?;
     if !EXPONENTS.contains(&exponent.value) {
         return Err(FitError::Refused(format!(
-            "electric friction grows as voltage to the power {:.2}, and a profile takes 0.5 to 12: check for a voltage \
-             that was not applied, and for strokes in which the finger stuck",
+            "electric friction grows as voltage to the power {:.2}, and a profile allows 0.5 to 12: check for a \
+             voltage that was not applied, and for strokes in which the finger stuck",
             exponent.value
         )));
     }
@@ -97,8 +104,9 @@ fn power_law(fitted_data: &FittedData, strokes: &[StrokeResult]) -> Result<Law, 
     // What the strokes of the highest voltage say without the law.
     let beside_n = value + check_law(strokes)?;
     let electric_friction_n = Estimate { value, low: low.min(beside_n), high: high.max(beside_n) };
-    let held_out_n = fitted_data.held_out.map(|held_out| (held_out.power_law_error_n, held_out.mean_n));
-    Ok((VoltageLaw::Power { exponent }, MeasuredPoint { voltage_v_rms, electric_friction_n }, held_out_n))
+    let held_out = fitted_data.held_out;
+    let held_out = held_out.map(|found| HeldOutError { rms_n: found.power_law_error_n, mean_friction_n: found.mean_n });
+    Ok((VoltageLaw::Power { exponent }, MeasuredPoint { voltage_v_rms, electric_friction_n }, held_out))
 }
 
 /// The law of the means at each voltage.
@@ -109,7 +117,8 @@ fn points(fitted: &FittedData, strokes: &[StrokeResult], friction_coefficient: &
     let LawOfPoints { points: mut below, exponent, held_out_error_n } = law;
     let highest = below.pop().ok_or(FitError::NotConverged)?;
     let measured_n = strokes.iter().flat_map(|stroke| &stroke.points).map(|point| point.measured_n);
-    Ok((VoltageLaw::Points { below, exponent }, highest, Some((held_out_error_n, mean(measured_n)))))
+    let held_out = HeldOutError { rms_n: held_out_error_n, mean_friction_n: mean(measured_n) };
+    Ok((VoltageLaw::Points { below, exponent }, highest, Some(held_out)))
 }
 
 /// Fails if the means of the strokes at a voltage deviate from the law by more than their 99.9 % interval and 5 %.
@@ -130,9 +139,9 @@ fn check_law(strokes: &[StrokeResult]) -> Result<f64, FitError> {
             let voltage_v_rms = level.first().map_or(f64::NAN, |one| one.voltage_v_rms);
             let [measured_mn, law_mn, error_mn] = [measured_n, law_n, error_n].map(|newtons| 1e3 * newtons);
             return Err(FitError::NoPowerLaw(format!(
-                "at {voltage_v_rms:.0} V rms electric friction was {measured_mn:.1} mN, and the power law that fits best \
-                 says {law_mn:.1} mN, further than the noise of these strokes explains ({error_mn:.1} mN): write the \
-                 points that you measured into a profile (docs/design/scenes.md, \"Empirical fingers\")"
+                "at {voltage_v_rms:.0} V rms electric friction was {measured_mn:.1} mN, but the best-fitting power law \
+                 predicts {law_mn:.1} mN, further off than the noise of these strokes explains ({error_mn:.1} mN): \
+                 write the points that you measured into a profile (docs/design/scenes.md, \"Empirical fingers\")"
             )));
         }
         beside_n = residual_n;
@@ -175,7 +184,7 @@ impl EmpiricalFit {
         }
     }
 
-    /// The fit in words, a line each.
+    /// The fit as text, one line per item.
     pub fn words(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
@@ -200,13 +209,13 @@ impl EmpiricalFit {
         if let VoltageLaw::Power { exponent } = self.law {
             line("exponent of the voltage", interval(exponent, 1.0, 2));
         }
-        if let Some((error_n, mean_n)) = self.held_out_n {
-            line("strokes left out", HeldOut::words(error_n, mean_n));
+        if let Some(HeldOutError { rms_n, mean_friction_n }) = self.held_out {
+            line("strokes left out", HeldOut::words(rms_n, mean_friction_n));
         }
         let what = if self.data.division == Division::Means { "means with their errors" } else { "strokes" };
         line("data", format!("{} {what}", self.strokes));
         let below = match self.law {
-            VoltageLaw::Power { .. } => "nobody measured that friction goes on by the same power".to_owned(),
+            VoltageLaw::Power { .. } => "the power law was not measured there".to_owned(),
             VoltageLaw::Points { exponent, .. } => {
                 format!("friction is taken to grow as voltage to the power {exponent:.1}")
             }

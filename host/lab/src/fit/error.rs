@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::faults::{FaultyStroke, sentence};
+use super::defects::{DefectiveStroke, sentence};
 use crate::table::TableError;
 
 /// Why data cannot be fitted.
@@ -16,7 +16,7 @@ pub enum FitError {
     TooFew(String),
     /// Strokes that cannot be used: all that were found.
     #[error("{}", sentence(.0))]
-    FaultyStrokes(Vec<FaultyStroke>),
+    DefectiveStrokes(Vec<DefectiveStroke>),
     /// Friction had not settled in the rows that are compared: the force sensor is too slow, or friction was smoothed.
     #[error("{0}")]
     NotSettled(String),

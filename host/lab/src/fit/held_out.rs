@@ -13,7 +13,7 @@ pub struct HeldOut {
     pub mean_n: f64,
     /// Root mean square error of the contact model, in newtons.
     pub contact_error_n: f64,
-    /// The same of the power law.
+    /// Root mean square error of the power law, in newtons.
     pub power_law_error_n: f64,
 }
 

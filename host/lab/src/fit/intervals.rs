@@ -1,4 +1,4 @@
-//! Intervals of what is fitted, from a bootstrap over strokes.
+//! Intervals of the fitted values, from a bootstrap over strokes.
 
 use super::contrast::StrokeMeans;
 use super::error::FitError;

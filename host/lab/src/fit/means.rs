@@ -1,4 +1,4 @@
-//! Means with their errors, as papers print them, as data of a fit.
+//! Means with their errors, as papers print them: data for a fit.
 //!
 //! A row is the mean friction at one voltage and load, with its standard error, or with the standard deviation and the
 //! number of what was averaged. The rows are fitted as the means of strokes are, weighted by their errors. Intervals
@@ -17,8 +17,8 @@ use frixel_play::GoesOn;
 use frixel_scene::brief;
 
 use super::contrast::StrokeMeans;
+use super::defects::Defects;
 use super::error::{FitError, plain};
-use super::faults::Faults;
 use super::intervals::{DRAWS, Fitted};
 use super::least_squares::{Measured, Observation, residuals_n};
 use super::recording::Division;
@@ -96,8 +96,8 @@ impl Errors {
             return Ok((error_n, count));
         }
         Err(FitError::Refused(format!(
-            "row {number}: the standard error of {} N is none of a measured force, which is 1 nN to 50 N: give the error of \
-             the mean, or leave the row out",
+            "row {number}: a standard error of {} N is not plausible: expected 1 nN to 50 N; give the error of the \
+             mean, or leave the row out",
             plain(error_n)
         )))
     }
@@ -130,7 +130,7 @@ pub(super) fn read<R: Read>(mut table: Table<R>, errors: &Errors) -> Result<Read
 pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) -> Result<FittedData, FitError> {
     if let Some(stroke) = settings.without.first() {
         return Err(FitError::Refused(format!(
-            "--without {}: a table of means has no strokes: delete the row of the mean that is to be left out",
+            "--without {}: a table of means has no strokes: delete the row of the mean to leave out",
             brief(stroke)
         )));
     }
@@ -142,9 +142,9 @@ pub(super) fn fit(rows: &[MeanRow], settings: &Settings, goes_on: GoesOn<'_>) ->
 
     let observations: Vec<Observation> = rows.iter().map(observation).collect();
     let mut strokes: Vec<StrokeMeans> = rows.iter().zip(&observations).map(|(row, one)| stroke(row, *one)).collect();
-    let mut faults = Faults::default();
-    rules::check_natural(&mut strokes, &mut faults)?;
-    faults.check()?;
+    let mut defects = Defects::default();
+    rules::check_natural(&mut strokes, &mut defects)?;
+    defects.check()?;
     let ripple = settings.ripple;
     let begin = start(&strokes, &observations, ripple)?;
     let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, ripple, start: &begin, goes_on };
@@ -177,13 +177,14 @@ fn check(rows: &[MeanRow]) -> Result<(f64, f64), FitError> {
     let found = rows.len();
     if found < MEANS_MIN {
         return Err(FitError::TooFew(format!(
-            "{found} means are too few: give one at no voltage and at least two at others, {MEANS_MIN} or more"
+            "{found} means are too few: at least {MEANS_MIN} are needed, one at 0 V and two at other voltages"
         )));
     }
     rules::check_load_unit(rows.iter().map(|row| row.normal_force_n))?;
     if let Some(row) = rows.iter().find(|row| row.normal_force_n <= 0.0) {
         return Err(FitError::Refused(format!(
-            "row {}, column normal_force_n: {} N is no load: give the mean normal force of that row",
+            "row {}, column normal_force_n: {} N is not a valid load: it must be above 0; give the mean normal force \
+             of that row",
             row.number,
             plain(row.normal_force_n)
         )));
@@ -224,10 +225,10 @@ fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted:
     if freedom >= 1.0 && chi_square > freedom * (1.0 - part + Z_ONE_SIDED_999 * part.sqrt()).powi(3) {
         let times = (chi_square / freedom).sqrt();
         return Err(FitError::Refused(format!(
-            "the means lie {times:.1} times their stated errors from the closest power law, and chance does that in fewer \
-             than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all rows are \
-             of the same fingers; if so, electric friction follows no power of the voltage: write its points into a \
-             profile (docs/design/scenes.md, \"Empirical fingers\")"
+            "the means lie {times:.1} times their stated errors from the closest power law, which happens by chance in \
+             fewer than 1 of 1,000 tables: check that errors are standard errors, that voltages are rms, and that all \
+             rows are of the same fingers; if so, electric friction follows no power of the voltage: write its points \
+             into a profile (docs/design/scenes.md, \"Empirical fingers\")"
         )));
     }
     Ok(())

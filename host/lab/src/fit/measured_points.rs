@@ -62,8 +62,8 @@ impl LawOfPoints {
         let levels = levels(strokes);
         if levels.len() > POINTS_MAX {
             return Err(FitError::Refused(format!(
-                "electric friction follows no power of the voltage, and has {} voltages, where a profile has at most \
-                 {POINTS_MAX} points: leave strokes of some voltages out with --without",
+                "electric friction follows no power of the voltage, and was measured at {} voltages, more than the \
+                 {POINTS_MAX} points of a profile: leave strokes of some voltages out with --without",
                 levels.len()
             )));
         }
@@ -111,8 +111,8 @@ fn rising(points: &[MeasuredPoint]) -> Result<(Vec<MeasuredPoint>, f64), FitErro
                  leave the strokes above that out with --without"
             };
             return Err(FitError::Refused(format!(
-                "electric friction follows no power of the voltage, and from {low_v_rms:.0} to {high_v_rms:.0} V rms it \
-                 grows as voltage to the power {exponent:.2}, where a profile takes 0.5 to 12: {cure}"
+                "electric friction follows no power of the voltage, and from {low_v_rms:.0} to {high_v_rms:.0} V rms \
+                 it grows as voltage to the power {exponent:.2}, and a profile allows 0.5 to 12: {cure}"
             )));
         }
     }

@@ -24,9 +24,9 @@
 mod contrast;
 mod copies;
 mod data_summary;
+mod defects;
 mod empirical;
 mod error;
-mod faults;
 mod held_out;
 mod intervals;
 mod law;
@@ -52,10 +52,10 @@ use frixel_play::{GoesOn, TO_THE_END};
 pub use crate::bootstrap::Estimate;
 use contrast::{Edges, Levels, Phases, StrokeMeans};
 pub use data_summary::DataSummary;
-pub use empirical::{EmpiricalFit, VoltageLaw, fit_empirical};
+use defects::Defects;
+pub use defects::{DefectiveStroke, StrokeDefect};
+pub use empirical::{EmpiricalFit, HeldOutError, VoltageLaw, fit_empirical};
 pub use error::FitError;
-use faults::Faults;
-pub use faults::{Fault, FaultyStroke};
 pub use held_out::HeldOut;
 use intervals::{Fitted, wandering};
 use law::{Attraction, CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M, Coupling};
@@ -109,8 +109,8 @@ pub fn measured_ripple(waveform: Waveform, carrier_hz: f64) -> Ripple {
 pub struct Fit {
     /// Friction over load with the drive off.
     pub friction_coefficient: Estimate,
-    /// The one number about electrode, skin and gap that friction data give, in `sqrt(N)/V^2`:
-    /// `eps0/(2 g^2) sqrt(pi R/k)`.
+    /// The only number about electrode, skin and gap that friction data determine, in `sqrt(N)/V^2`: `eps0/(2 g^2)
+    /// sqrt(pi R/k)`.
     pub coupling_sqrt_n_per_v2: Estimate,
     /// Ripple of the carrier of the measurement. Electric frictions are means under it.
     pub ripple: Ripple,
@@ -120,7 +120,7 @@ pub struct Fit {
     pub electric_friction_n: Estimate,
     /// Electric friction at the highest voltage of the data, in newtons.
     pub electric_friction_most_n: Estimate,
-    /// Exponent of the voltage, and what it says about the model.
+    /// Exponent of the voltage, and its verdict on the model.
     pub voltage_exponent: Exponent,
     /// Exponent of the load, likewise.
     pub load_exponent: Exponent,
@@ -136,7 +136,7 @@ pub struct Fit {
     pub strokes: Vec<StrokeResult>,
 }
 
-/// The means of a stroke beside the fit.
+/// The means of a stroke, with the fitted values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeResult {
     /// Name of the stroke.
@@ -193,29 +193,30 @@ impl FittedData {
         let is_simulated = rows.iter().any(|row| row.is_simulated);
         let (rows, rows_without_time) = recording::with_times(rows)?;
         let (rows, sensor_zero) = zero::taken_from(rows);
-        let mut faults = Faults::default();
-        let fitted = Self::of_strokes_without(&mut faults, rows, settings, goes_on);
-        // A faulty stroke may be the cause of what else is wrong.
-        faults.check()?;
+        let mut defects = Defects::default();
+        let fitted = Self::of_strokes_without(&mut defects, rows, settings, goes_on);
+        // A defective stroke may be the cause of what else is wrong.
+        defects.check()?;
         if matches!(fitted, Err(FitError::TooFew(_))) {
             // Those that were left out are missing.
-            faults.refuse()?;
+            defects.refuse()?;
         }
         let mut fitted = fitted?;
-        fitted.data.preparation = Preparation { left_out: faults.faulty, sensor_zero, rows_without_time, is_simulated };
+        fitted.data.preparation =
+            Preparation { left_out: defects.defective, sensor_zero, rows_without_time, is_simulated };
         Ok(fitted)
     }
 
-    /// Fits the laws to the strokes without faults; the others are added to `faults`.
+    /// Fits the laws to the strokes without defects; the others are added to `defects`.
     fn of_strokes_without(
-        faults: &mut Faults,
+        defects: &mut Defects,
         rows: Vec<Row>,
         settings: &Settings,
         goes_on: GoesOn<'_>,
     ) -> Result<Self, FitError> {
         rules::check_units(&rows)?;
-        let mut recording = Recording::new(rows, &settings.without, faults)?;
-        let (load_median_n, load_range_n) = rules::check_loads(&mut recording, faults);
+        let mut recording = Recording::new(rows, &settings.without, defects)?;
+        let (load_median_n, load_range_n) = rules::check_loads(&mut recording, defects);
         rules::check_strokes(&recording)?;
         let levels = Levels::of(&recording);
         let voltage_range_v_rms = rules::check_voltages(levels.range_v_rms())?;
@@ -224,7 +225,7 @@ impl FittedData {
         rules::check_phases(&phases)?;
         let used = phases.means(&Edges::USED);
         let mut strokes = used.clone();
-        rules::check_natural(&mut strokes, faults)?;
+        rules::check_natural(&mut strokes, defects)?;
         rules::check_forces(&recording)?;
         let bandwidth_hz = sensor::check_bandwidth(&phases)?;
         let settling_error = sensor::check_settled(&phases, &used)?;
@@ -236,10 +237,10 @@ impl FittedData {
         let start = start(&strokes, &observations, ripple)?;
         let search = Search { voltage_v_rms: settings.voltage_v_rms, normal_load_n, ripple, start: &start, goes_on };
         let best = search.run(&observations, &start).ok_or(FitError::NotConverged)?;
-        rules::check_slip(&strokes, &best.power, faults);
+        rules::check_slip(&strokes, &best.power, defects);
         rules::check_top(&strokes, voltage_range_v_rms.1)?;
         // The search for intervals takes longest.
-        faults.check()?;
+        defects.check()?;
         let held_out = HeldOut::of(&search, &strokes, &best);
         let fitted = Fitted::new(best, &search, &strokes, settings.seed)?;
         let data = DataSummary {

@@ -2,13 +2,13 @@
 
 use frixel_scene::brief;
 
-use super::{Division, FaultyStroke, SensorZero};
+use super::{DefectiveStroke, Division, SensorZero};
 
 /// Omissions and corrections in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Preparation {
     /// Odd strokes that were left out.
-    pub left_out: Vec<FaultyStroke>,
+    pub left_out: Vec<DefectiveStroke>,
     /// Zero of the force sensor, from rows without contact.
     pub sensor_zero: Option<SensorZero>,
     /// Number of rows that were left out because they have no time although others do.
@@ -23,7 +23,8 @@ impl Preparation {
         if division == Division::Means {
             return Vec::new();
         }
-        let note = |faulty: &FaultyStroke| format!("stroke {} left out: {}", brief(&faulty.stroke), faulty.fault);
+        let note =
+            |defective: &DefectiveStroke| format!("stroke {} left out: {}", brief(&defective.stroke), defective.defect);
         let mut notes: Vec<String> = self.left_out.iter().map(note).collect();
         notes.extend(self.is_simulated.then(|| "the finger is simulated: nothing was measured".to_owned()));
         notes.extend(match self.rows_without_time {

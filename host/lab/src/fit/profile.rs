@@ -4,8 +4,8 @@ use frixel_scene::{Elasticity, Evidence, Experiment, FingerProfile};
 
 use super::{CONVENTIONAL_RADIUS_M, CONVENTIONAL_STIFFNESS_PA_PER_M, Fit};
 
-/// The profile of a fitted finger. Radius and stiffness are a convention; the skin gap makes up for them on the screen
-/// of the experiment. It is assumed if the finger was simulated.
+/// The profile of a fitted finger. Radius and stiffness are a convention; the skin gap compensates for them on the
+/// screen of the experiment. It is assumed if the finger was simulated.
 pub fn profile(fit: &Fit, experiment: Experiment) -> FingerProfile {
     FingerProfile {
         friction_coefficient: rounded(fit.friction_coefficient.value),

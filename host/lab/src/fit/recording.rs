@@ -1,11 +1,11 @@
-//! Divides rows into strokes, and drops what is no steady sliding.
+//! Divides rows into strokes, and drops rows without steady sliding.
 
 use frixel_scene::brief;
 use serde::Serialize;
 
 use super::copies;
+use super::defects::{Defects, StrokeDefect};
 use super::error::FitError;
-use super::faults::{Fault, Faults};
 use super::table::Row;
 use super::turns::{STILL_MM_S, pieces};
 use crate::statistics::median;
@@ -79,24 +79,24 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Divides rows into strokes, leaves out those that are named in `without` and those with faults, and drops starts
+    /// Divides rows into strokes, leaves out those that are named in `without` and those with defects, and drops starts
     /// and turns.
-    pub(super) fn new(rows: Vec<Row>, without: &[String], faults: &mut Faults) -> Result<Self, FitError> {
+    pub(super) fn new(rows: Vec<Row>, without: &[String], defects: &mut Defects) -> Result<Self, FitError> {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
         let has_speed = rows.iter().any(|row| row.speed_mm_s.is_some());
         check_time(&rows)?;
         if let Some([[first, last], [of_first, of_last]]) = copies::find(&rows) {
             return Err(FitError::Refused(format!(
-                "rows {first} to {last} have the numbers of rows {of_first} to {of_last}: delete the copy, or record anew what \
-                 was not measured twice"
+                "rows {first} to {last} repeat rows {of_first} to {of_last}: delete the copy, or record the missing \
+                 part again"
             )));
         }
         let (division, strokes) = divided(rows, has_time)?;
         let strokes = left(strokes, without)?;
-        faults.strokes = strokes.len();
+        defects.strokes = strokes.len();
         let trimmed = strokes.into_iter().map(|stroke| (stroke.name.clone(), trimmed(stroke, division)));
         let strokes =
-            trimmed.filter_map(|(name, stroke)| stroke.map_err(|fault| faults.push(&name, fault)).ok()).collect();
+            trimmed.filter_map(|(name, stroke)| stroke.map_err(|defect| defects.push(&name, defect)).ok()).collect();
         Ok(Self { strokes, division, has_time, has_speed })
     }
 
@@ -113,8 +113,8 @@ pub(super) fn with_times(mut rows: Vec<Row>) -> Result<(Vec<Row>, usize), FitErr
     let Some(first) = rows.iter().find(is_timeless).filter(|_| unknown < count) else { return Ok((rows, 0)) };
     if unknown as f64 > TIMELESS_PART * count as f64 {
         return Err(FitError::Refused(format!(
-            "{unknown} of {count} rows have no time, row {} the first, where a few are left out: give each its time in \
-             column time_s, or leave the column out",
+            "{unknown} of {count} rows have no time, the first of them row {}, too many to leave out: give each its \
+             time in column time_s, or leave the column out",
             first.number
         )));
     }
@@ -163,8 +163,8 @@ fn turned(stroke: Stroke, has_time: bool) -> Result<Vec<Stroke>, FitError> {
     let mut pieces: Vec<Stroke> = pieces.collect();
     if let Some(row) = pieces.get(1).and_then(|piece| piece.rows.first()).filter(|_| !has_time) {
         return Err(FitError::Refused(format!(
-            "row {}: the finger turns within stroke {}, friction or speed changes its sign there: add a column time_s, so \
-             that what lies around the turn is left out, or give each direction a stroke of its own",
+            "row {}: the finger turns within stroke {}, where friction or speed changes its sign: add a column time_s, \
+             so that rows around the turn are left out, or give each direction its own stroke",
             row.number,
             brief(&name)
         )));
@@ -205,8 +205,8 @@ fn check_time(rows: &[Row]) -> Result<(), FitError> {
             && before.stroke == row.stroke
         {
             return Err(FitError::Refused(format!(
-                "row {}, column time_s: {now_s} s comes after {then_s} s, time goes backwards: sort the rows by time, or \
-                 number the strokes in a column stroke if each has a clock of its own",
+                "row {}, column time_s: {now_s} s follows {then_s} s, so time goes backwards: sort the rows by time, \
+                 or number the strokes in a column stroke if each has a clock of its own",
                 row.number
             )));
         }
@@ -228,29 +228,29 @@ fn left(strokes: Vec<Stroke>, without: &[String]) -> Result<Vec<Stroke>, FitErro
 }
 
 /// Drops start, turn, and rows of a wrong speed; gives friction a positive sign.
-fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, Fault> {
+fn trimmed(mut stroke: Stroke, division: Division) -> Result<Stroke, StrokeDefect> {
     // A block of rows neither begins nor ends with a turn.
     if division != Division::Blocks
         && let (Some(first_s), Some(duration_s)) = (stroke.rows.first().and_then(|row| row.time_s), stroke.duration_s())
     {
         if duration_s < STROKE_MIN_S {
-            return Err(Fault::Short { found: format!("{duration_s:.3} s") });
+            return Err(StrokeDefect::Short { found: format!("{duration_s:.3} s") });
         }
         let kept_s = first_s + START_S..=first_s + duration_s - END_S;
         stroke.rows.retain(|row| row.time_s.is_some_and(|time_s| kept_s.contains(&time_s)));
     }
     let count = stroke.rows.len();
     if count < KEPT_ROWS {
-        return Err(Fault::Short { found: format!("{count} rows of steady sliding") });
+        return Err(StrokeDefect::Short { found: format!("{count} rows of steady sliding") });
     }
     let speeds_mm_s = stroke.rows.iter().filter_map(|row| row.speed_mm_s).map(f64::abs);
     if speeds_mm_s.clone().next().is_some() {
         let speed_mm_s = median(speeds_mm_s);
         if speed_mm_s < STILL_MM_S {
-            return Err(Fault::NoSlip { found: format!("its speed is {speed_mm_s:.1} mm/s") });
+            return Err(StrokeDefect::NoSlip { found: format!("its speed is {speed_mm_s:.1} mm/s") });
         }
         if !SPEEDS_MM_S.contains(&speed_mm_s) {
-            return Err(Fault::Speed { speed_mm_s });
+            return Err(StrokeDefect::Speed { speed_mm_s });
         }
         stroke.rows.retain(|row| row.speed_mm_s.is_none_or(|speed| SPEEDS_MM_S.contains(&speed.abs())));
     }
@@ -266,7 +266,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::zero::taken_from;
-    use super::{Faults, Recording, Row};
+    use super::{Defects, Recording, Row};
 
     /// Rows of a finger that slides one way, a thousand a second, from a time on.
     fn slide(rows: &mut Vec<Row>, count: usize, start_s: f64, sign: f64, speed_mm_s: Option<f64>) {
@@ -293,7 +293,7 @@ mod tests {
 
     /// The numbers of the rows of each stroke.
     fn strokes(rows: Vec<Row>) -> Vec<Vec<u64>> {
-        let recording = Recording::new(rows, &[], &mut Faults::default()).unwrap();
+        let recording = Recording::new(rows, &[], &mut Defects::default()).unwrap();
         recording.strokes.iter().map(|stroke| stroke.rows.iter().map(|row| row.number).collect()).collect()
     }
 

@@ -2,8 +2,8 @@
 
 use super::Settings;
 use super::contrast::{Levels, Phases, StrokeMeans};
+use super::defects::{Defects, StrokeDefect};
 use super::error::{FitError, plain};
-use super::faults::{Fault, Faults};
 use super::least_squares::{Measured, Solution};
 use super::recording::{Recording, Stroke};
 use super::sensor::ROWS_HZ_MIN;
@@ -53,8 +53,7 @@ pub(super) fn check_units(rows: &[Row]) -> Result<(), FitError> {
 pub(super) fn check_load_unit(loads_n: impl Iterator<Item = f64> + Clone) -> Result<(), FitError> {
     if loads_n.clone().all(|load_n| load_n.abs() < 1e-9) {
         return Err(FitError::Refused(
-            "column normal_force_n is zero throughout, there are no loads: record the normal force with a load cell"
-                .to_owned(),
+            "column normal_force_n is zero throughout: record the normal force with a load cell".to_owned(),
         ));
     }
     let median = median(loads_n);
@@ -84,8 +83,8 @@ pub(super) fn check_strokes(recording: &Recording) -> Result<(), FitError> {
 
 fn too_few_strokes(found: usize) -> FitError {
     FitError::TooFew(format!(
-        "{found} strokes are too few for an interval: record at least {STROKES_MIN}, 60 s of strokes back and forth are \
-         best"
+        "{found} strokes are too few for an interval: record at least {STROKES_MIN}; 60 s of strokes back and forth \
+         are best"
     ))
 }
 
@@ -95,8 +94,8 @@ pub(super) fn check_at_voltage(found: usize, voltage_v_rms: f64) -> Result<(), F
         return Ok(());
     }
     Err(FitError::TooFew(format!(
-        "{found} of the strokes have {voltage_v_rms:.0} V rms, too few for an interval there: record at least \
-         {GROUP_MIN}, as many as at the other voltages are best, or leave them out with --without"
+        "{found} of the strokes are at {voltage_v_rms:.0} V rms, too few for an interval: record at least {GROUP_MIN}, \
+         best as many as at the other voltages, or leave them out with --without"
     )))
 }
 
@@ -122,8 +121,8 @@ pub(super) fn check_voltages(range_v_rms: Option<(f64, f64)>) -> Result<(f64, f6
     }
     if high < VOLTAGE_RATIO_MIN * low {
         return Err(FitError::Refused(format!(
-            "one voltage only ({high:.1} V rms besides zero): the model is tested by how friction grows from one voltage \
-             to another; record at least two, for example 75, 106 and 150 V rms"
+            "only one voltage ({high:.1} V rms besides zero): the model is tested by how friction grows from one \
+             voltage to another; record at least two, for example 75, 106 and 150 V rms"
         )));
     }
     Ok((low, high))
@@ -147,21 +146,21 @@ pub(super) fn check_carrier(recording: &Recording, levels: &Levels) -> Result<()
 pub(super) fn check_phases(phases: &Phases) -> Result<(), FitError> {
     let Some(rows) = phases.unresolved_rows() else { return Ok(()) };
     Err(FitError::Refused(format!(
-        "the drive is switched every {rows:.0} rows, too few to leave out the rows beside a switch, where friction is on \
-         its way: record at least {ROWS_HZ_MIN} rows a second and switch every 20 ms or later"
+        "the drive is switched every {rows:.0} rows, too few to leave out the rows beside a switch, where friction is \
+         still changing: record at least {ROWS_HZ_MIN} rows a second and switch every 20 ms or later"
     )))
 }
 
 /// Leaves out the strokes whose loads are not like those of the others; returns the median load, and the smallest and
 /// the largest of a stroke.
-pub(super) fn check_loads(recording: &mut Recording, faults: &mut Faults) -> (f64, (f64, f64)) {
+pub(super) fn check_loads(recording: &mut Recording, defects: &mut Defects) -> (f64, (f64, f64)) {
     let of_stroke = |stroke: &Stroke| stroke.median(|row| row.normal_force_n);
     let median_n = median(recording.rows().map(|row| row.normal_force_n));
     recording.strokes.retain(|stroke| {
         let load_n = of_stroke(stroke);
         let off = (load_n / median_n - 1.0).abs();
         if off > LOAD_TOLERANCE {
-            faults.push(&stroke.name, Fault::Load { load_n, percent: 100.0 * off, median_n });
+            defects.push(&stroke.name, StrokeDefect::Load { load_n, percent: 100.0 * off, median_n });
         }
         off <= LOAD_TOLERANCE
     });
@@ -171,7 +170,7 @@ pub(super) fn check_loads(recording: &mut Recording, faults: &mut Faults) -> (f6
 
 /// Checks that natural friction is known and is that of skin. Leaves out the strokes in which it was not that of a
 /// sliding finger.
-pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults) -> Result<(), FitError> {
+pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, defects: &mut Defects) -> Result<(), FitError> {
     let ratio = median(strokes.iter().filter_map(|stroke| stroke.natural_coefficient));
     if ratio.is_nan() {
         let sentence = "no row has a voltage of zero, so natural friction is unknown: switch the drive on and off while \
@@ -195,7 +194,7 @@ pub(super) fn check_natural(strokes: &mut Vec<StrokeMeans>, faults: &mut Faults)
         let slips = coefficient >= SLIP_SHARE * ratio;
         if !slips {
             let found = format!("friction over load is {coefficient:.3} with the drive off, and {ratio:.3} in others");
-            faults.push(&stroke.name, Fault::NoSlip { found });
+            defects.push(&stroke.name, StrokeDefect::NoSlip { found });
         }
         slips
     });
@@ -209,8 +208,8 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
         for (column, found_n) in [("normal_force_n", row.normal_force_n), ("friction_n", row.friction_n)] {
             if found_n.abs() > FORCE_MAX_N {
                 return Err(FitError::Refused(format!(
-                    "row {}, column {column}: {} N is no force of a finger: correct the cell, or name the column \
-                     friction_mn or normal_force_mn if it is in millinewtons",
+                    "row {}, column {column}: {} N is not a valid force of a finger: correct the cell, or name the \
+                     column friction_mn or normal_force_mn if it is in millinewtons",
                     row.number,
                     plain(found_n)
                 )));
@@ -222,7 +221,7 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
 
 /// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far
 /// below that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
-pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mut Faults) {
+pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, defects: &mut Defects) {
     let mut ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()
         .filter_map(|stroke| {
@@ -238,13 +237,13 @@ pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, faults: &mu
     // Where each voltage has few strokes, only the fit tells what is usual.
     let mut rest = Vec::new();
     for alike in ratios.chunk_by(|(one, _), (other, _)| one.top_level == other.top_level) {
-        if alike.len() < GROUP_MIN { rest.extend_from_slice(alike) } else { check_slip_of(alike, faults) }
+        if alike.len() < GROUP_MIN { rest.extend_from_slice(alike) } else { check_slip_of(alike, defects) }
     }
-    check_slip_of(&rest, faults);
+    check_slip_of(&rest, defects);
 }
 
 /// Finds the strokes whose part of the fitted attraction is far below the usual one of these strokes.
-fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
+fn check_slip_of(ratios: &[(&StrokeMeans, f64)], defects: &mut Defects) {
     let usual = median(ratios.iter().map(|(_, ratio)| *ratio));
     if !(usual > 0.0) {
         return;
@@ -254,7 +253,7 @@ fn check_slip_of(ratios: &[(&StrokeMeans, f64)], faults: &mut Faults) {
     let least = (RESPONSE_SHARE * usual).min(usual - 6.0 * spread);
     for (stroke, ratio) in ratios.iter().filter(|(_, ratio)| *ratio < least) {
         let found = format!("the drive added {:.0} % of the friction that it added in others", 100.0 * ratio / usual);
-        faults.push(&stroke.name, Fault::NoSlip { found });
+        defects.push(&stroke.name, StrokeDefect::NoSlip { found });
     }
 }
 
@@ -265,8 +264,8 @@ pub(super) fn check_stated_voltage(settings: &Settings, max: f64) -> Result<(), 
         return Ok(());
     }
     Err(FitError::Refused(format!(
-        "the data reach {max:.1} V rms, friction at {stated} V would be extrapolated: record up to {stated} V rms, or state \
-         it lower with --voltage {max:.0}"
+        "the data end at {max:.1} V rms, so friction at {stated} V would be extrapolated: record up to {stated} V rms, \
+         or use --voltage {max:.0}"
     )))
 }
 
@@ -276,8 +275,8 @@ pub(super) fn check_stated_load(settings: &Settings, loads: (f64, f64)) -> Resul
     match settings.normal_load_n {
         Some(stated) if !(low / EXTRAPOLATION..=high * EXTRAPOLATION).contains(&stated) => {
             Err(FitError::Refused(format!(
-                "the data have loads from {low:.3} to {high:.3} N, friction under {stated} N would be extrapolated: record \
-                 under that load, or leave out --load"
+                "the data have loads from {low:.3} to {high:.3} N, so friction under {stated} N would be extrapolated: \
+                 record under that load, or leave out --load"
             )))
         }
         _ => Ok(()),

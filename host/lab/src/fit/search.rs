@@ -88,8 +88,8 @@ pub(super) fn start(
 pub(super) fn no_electric_friction(found_n: f64) -> FitError {
     FitError::Refused(format!(
         "the voltage adds no friction ({found_n:.2e} N at the highest one): check that the electrode is driven, that \
-         voltage and friction belong to the same time, and that friction was not smoothed, so that it changes before its \
-         switch"
+         voltage and friction belong to the same time, and that friction was not smoothed, which makes it change \
+         before its switch"
     ))
 }
 

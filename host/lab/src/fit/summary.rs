@@ -108,7 +108,7 @@ impl<'f> Summary<'f> {
             rows: data.rows,
             division: Some(data.division),
             bandwidth_hz: data.bandwidth_hz,
-            strokes_left_out: left_out.iter().map(|faulty| &*faulty.stroke).collect(),
+            strokes_left_out: left_out.iter().map(|defective| &*defective.stroke).collect(),
             sensor_zero_n: sensor_zero.map(|zero| [zero.normal_force_n, zero.friction_n]),
             ..Self::default()
         }
@@ -116,7 +116,7 @@ impl<'f> Summary<'f> {
 }
 
 impl Fit {
-    /// The fit for programs: the keys that docs/design/outputs.md lists.
+    /// The fit as JSON, with the keys that docs/design/outputs.md lists.
     pub fn json(&self) -> serde_json::Value {
         let Exponent { measured, model, verdict } = self.voltage_exponent;
         let load = Some(self.load_exponent).filter(|exponent| exponent.verdict != Verdict::None);
@@ -140,8 +140,7 @@ impl Fit {
 }
 
 impl EmpiricalFit {
-    /// The fit for programs: the keys of a [`Fit`], of which a law without a model leaves some `null`, and
-    /// those of the law.
+    /// The fit as JSON: the keys of a [`Fit`], some of them `null` without a model, and the keys of the law.
     pub fn json(&self) -> serde_json::Value {
         let exponent = match self.law {
             VoltageLaw::Power { exponent } => Some(exponent),
@@ -153,7 +152,7 @@ impl EmpiricalFit {
             law: Some("empirical"),
             voltage_exponent: exponent.map(|exponent| exponent.value),
             voltage_exponent_interval: exponent.map(interval),
-            held_out_error_n: self.held_out_n.map(|(error_n, _)| error_n),
+            held_out_error_n: self.held_out.map(|held_out| held_out.rms_n),
             points: Some(points),
             intervals_n: Some(self.points().map(|point| interval(point.electric_friction_n)).collect()),
             ..Summary::of(&self.data, self.strokes, self.friction_coefficient, (voltage_v_rms, electric_friction_n))
@@ -165,7 +164,7 @@ fn interval(estimate: Estimate) -> [f64; 2] {
     [estimate.low, estimate.high]
 }
 
-/// The fit in words, a line each: the results, what they say about the model, and what the data cannot tell.
+/// The fit as text, one line per item: results, verdicts on the model, and limits of the data.
 pub fn words(fit: &Fit, screen: &str) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
@@ -223,7 +222,7 @@ fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
         Verdict::Kept => "is not contradicted",
         Verdict::Doubted => "is in doubt",
     };
-    format!("{value:.2} (95 % interval {low:.2} to {high:.2}); the model says {model:.2} and {outcome}")
+    format!("{value:.2} (95 % interval {low:.2} to {high:.2}); the model predicts {model:.2} and {outcome}")
 }
 
 /// The limits of the data, as sentences.
@@ -238,7 +237,8 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
             "means cannot tell how strokes or people differ, nor what they have in common: intervals come from the stated \
              errors, as if the means were independent, and are those of the mean finger",
         );
-        notes.push("in means, nobody checked that fingers slid steadily, nor that they did not change while they were measured");
+        notes
+            .push("means do not show whether fingers slid steadily, nor whether they changed while they were measured");
         if fit.data.load_range_n.0 >= fit.data.load_range_n.1 {
             notes.push("all loads are equal, so the means say nothing about other loads");
         }
@@ -264,7 +264,7 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
         );
     }
     if !fit.data.has_speed {
-        notes.push("without a column speed_mm_s, nobody checked that the finger slid at 20 to 100 mm/s");
+        notes.push("without a column speed_mm_s, sliding at 20 to 100 mm/s was not checked");
     }
     notes
 }

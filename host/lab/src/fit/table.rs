@@ -33,13 +33,13 @@ pub struct Row {
     pub voltage_v_rms: f64,
     /// Normal force, in newtons.
     pub normal_force_n: f64,
-    /// Friction in newtons; its sign may say the direction.
+    /// Friction in newtons; its sign may state the direction.
     pub friction_n: f64,
     /// Time, in seconds.
     pub time_s: Option<f64>,
     /// Name of the stroke.
     pub stroke: Option<String>,
-    /// Speed in mm/s; its sign may say the direction.
+    /// Speed in mm/s; its sign may state the direction.
     pub speed_mm_s: Option<f64>,
     /// Whether the finger is simulated: `finger_origin` is `assumed`.
     pub is_simulated: bool,

@@ -1,4 +1,4 @@
-//! Divides what was recorded as one stroke where the finger turns.
+//! Divides a recorded stroke where the finger turns.
 
 use super::table::Row;
 use crate::statistics::median;

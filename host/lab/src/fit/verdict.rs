@@ -183,8 +183,8 @@ fn refused(quantity: &'static str, (exponent, half_width): (Exponent, f64)) -> R
     };
     Err(FitError::Refused(format!(
         "electric friction grows as {quantity} to the power {value:.2} ({low:.2} to {high:.2}, the 99.9 % interval and \
-         0.1 more on either side), and the model says {model:.2}: the contact model does not hold for these data, so no \
-         profile is fitted; check {cure}; see docs/inside/evidence.md"
+         0.1 more on either side), and the model predicts {model:.2}: the contact model does not hold for these data, \
+         so no profile is fitted; check {cure}; see docs/inside/evidence.md"
     )))
 }
 

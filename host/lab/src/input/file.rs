@@ -1,4 +1,4 @@
-//! The one opener of files, of the command and of Python: regular files of at most a stated size.
+//! Opens files for the command and for Python: regular files of at most a stated size.
 //!
 //! A file that is a pipe or a device is not read, since it may have no end. Errors are [`io::Error`]s, for the
 //! sentences of those who read.

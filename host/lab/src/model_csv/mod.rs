@@ -215,7 +215,7 @@ fn inverted<T: Number>(row: &Row) -> Result<Answer, Refusal> {
     let voltage_v_rms = match (row.is_filled(total), row.is_filled(electric)) {
         (true, true) => return refused(": friction_n and electric_friction_n are both filled in; leave one empty"),
         (false, false) => {
-            return refused(", column friction_n: neither it nor electric_friction_n is filled in");
+            return refused(", column friction_n: neither friction_n nor electric_friction_n is filled in");
         }
         (true, false) => model.contact.voltage_for_friction(row.real(total)?),
         (false, true) => model.contact.voltage_for_electric_friction(row.real(electric)?),

@@ -20,7 +20,7 @@ const GROUPS_MAX: u64 = 65_536;
 /// Most values of all columns, 1 GiB of them: 93 minutes of a play at 1 kHz.
 const VALUES_MAX: u64 = 64 << 20;
 
-/// Fails if a recording with so many rows and columns is too long to be read back. Asked before it is made.
+/// Fails if a recording of this many rows and columns would be too long to read back.
 pub fn check_length(rows: u64, columns: usize) -> Result<(), RecordingError> {
     let max = ROWS_MAX.min(VALUES_MAX / columns.max(1) as u64);
     if rows <= max {

@@ -8,14 +8,14 @@ use crate::input::InputError;
 /// Why a recording cannot be read or written.
 #[derive(Debug, Error)]
 pub enum RecordingError {
-    /// Parquet that is damaged, or of a kind that is not read.
-    #[error("its Parquet cannot be read ({0}): take another copy, or record anew")]
+    /// Parquet data that are damaged or unsupported.
+    #[error("its Parquet data cannot be read ({0}): take another copy, or record again")]
     Damaged(ParquetError),
-    /// More than is read, by what the file says of itself.
+    /// The file states a size above the limit.
     #[error("{0}: give a recording that `frixel play --record` has written")]
     TooMuch(#[from] InputError),
     /// Metadata that cannot be read.
-    #[error("its metadata `{key}` cannot be read ({source}): take another copy, or record anew")]
+    #[error("its metadata `{key}` cannot be read ({source}): take another copy, or record again")]
     Metadata {
         /// The key.
         key: &'static str,
@@ -31,7 +31,7 @@ pub enum RecordingError {
     /// [`GoesOn`](frixel_play::GoesOn) broke before the result was complete.
     #[error("interrupted")]
     Interrupted,
-    /// It is something else than a recording, or not as it was written, or too long to be read back.
+    /// It is not a recording, was changed, or is too long to be read back.
     #[error("{0}")]
     Refused(String),
 }
@@ -44,13 +44,12 @@ impl RecordingError {
     /// Columns in columns, or structs in structs of the metadata.
     pub(super) fn nested() -> Self {
         Self::refused(
-            "its columns have columns in them, and those of a recording are flat: give one that `frixel play --record` has \
-             written",
+            "it has nested columns, and a recording's are flat: give one that `frixel play --record` has written",
         )
     }
 
     /// A column that the metadata does not describe.
     pub(super) fn other_columns() -> Self {
-        Self::refused("its columns are not those that its metadata names: take another copy, or record anew")
+        Self::refused("its columns differ from those in its metadata: take another copy, or record again")
     }
 }

@@ -33,7 +33,7 @@ pub enum Kind {
     Number,
     /// Whole numbers.
     Integer,
-    /// Texts.
+    /// Strings.
     Text,
 }
 
@@ -44,7 +44,7 @@ pub enum Values {
     Numbers(Vec<Option<f64>>),
     /// Whole numbers.
     Integers(Vec<Option<i32>>),
-    /// Texts.
+    /// Strings.
     Texts(Vec<Option<String>>),
 }
 

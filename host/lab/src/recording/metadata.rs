@@ -25,28 +25,28 @@ pub struct Metadata {
     pub git_revision: Option<String>,
     /// Protocol that it speaks: `major.minor`.
     pub protocol: String,
-    /// Where the scene played: `sim`, `qemu`, `pico`, or `board` for one at a port.
+    /// Rig that played the scene: `sim`, `qemu`, `pico`, or `board` for one at a port.
     pub rig: String,
     /// Whether finger or board is simulated. Otherwise a person's finger was on a board, which cannot be played again.
     pub is_simulated: bool,
     /// The board.
     pub board: BoardIdentity,
-    /// Ticks of the board a second.
+    /// Ticks of the board per second.
     pub tick_hz: u32,
     /// Ticks between two rows.
     pub ticks_per_row: u32,
     /// Code of the participant, if one was given.
     pub participant: Option<String>,
-    /// How the play was made, a [`PlayOptions`](crate::simulate::PlayOptions): what plays it again reads this.
+    /// Options of the play, a [`PlayOptions`](crate::simulate::PlayOptions), for replaying it.
     pub play: Value,
     /// Text of the scene's file.
     #[serde(skip)]
     pub scene: String,
-    /// The other files, by what they are (`stroke`, `finger`, `screen`, `touch`, `stream`) or, after `scene/`, the name
-    /// by which the scene names them.
+    /// The other files, by role (`stroke`, `finger`, `screen`, `touch`, `stream`) or, for files of the scene, by
+    /// `scene/` and their name in the scene.
     #[serde(skip)]
     pub files: BTreeMap<String, SourceFile>,
-    /// Scenes that replaced the first one, or that the board refused, in their order.
+    /// Scenes that replaced the first one, or that the board refused, in order.
     #[serde(skip)]
     pub later_scenes: Vec<LaterScene>,
     /// Events, in their order.
@@ -55,7 +55,7 @@ pub struct Metadata {
 }
 
 impl Metadata {
-    /// The version that makes recordings, and that plays them again.
+    /// The version that writes recordings, and that can replay them.
     pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
 
     /// Metadata of the program and of the board, as far as the board is known.
@@ -73,7 +73,7 @@ impl Metadata {
         }
     }
 
-    /// Adds a scene that was put on the board, with the files that it names.
+    /// Adds a scene that was sent to the board, with the files that it names.
     pub fn add_scene<'a>(
         &mut self,
         (t_s, scene, is_refused): (f64, String, bool),
@@ -122,28 +122,28 @@ impl From<&Hello> for BoardIdentity {
     }
 }
 
-/// A scene that was put on the board in place of another one.
+/// A scene that replaced another one, or was refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LaterScene {
-    /// Time from which on it played, s.
+    /// Time at which it began to play, s.
     pub t_s: f64,
     /// Text of its file.
     pub scene: String,
-    /// Whether the board refused it, so that the scene before played on.
+    /// Whether the board refused it, and kept playing the previous scene.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_refused: bool,
-    /// The files that it names, by the names that it gives them.
+    /// Its files, by their names in the scene.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub files: BTreeMap<String, SourceFile>,
 }
 
-/// A file that a play was made from.
+/// An input file of a play.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SourceFile {
     /// Its text.
     Text(String),
-    /// Its bytes in hexadecimal digits, if it is no text.
+    /// Its bytes in hexadecimal digits, if it is not text.
     Hex(String),
     /// A file that is too large to be kept.
     Hash {
@@ -191,7 +191,7 @@ impl SourceFile {
     }
 }
 
-/// A file whose bytes come while a play goes on.
+/// A file that grows during a play.
 #[derive(Clone, Debug, Default)]
 pub struct GrowingFile {
     /// The first of its bytes, as many as a recording may keep.

@@ -34,7 +34,7 @@ pub use replay::ReplayError;
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
 pub const ROWS_PER_GROUP: usize = 65_536;
 
-/// A recording: columns of equal length, and what is known of them.
+/// A recording: columns of equal length, with metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The inputs of the recording, and the events during it.
@@ -62,7 +62,7 @@ impl Recording {
         Self { metadata, columns, is_cut_off: false }
     }
 
-    /// The recording of a table in CSV, with commas between columns and points in numbers, that has these columns.
+    /// Reads a recording with these columns from CSV with comma separators and decimal points.
     pub fn of_csv(metadata: Metadata, csv: &[u8], fields: Vec<Field>) -> Result<Self, RecordingError> {
         let mut reader = csv::Reader::from_reader(csv);
         let header = reader.headers().map_err(RecordingError::Table)?.clone();

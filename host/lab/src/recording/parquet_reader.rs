@@ -35,7 +35,7 @@ impl Recording {
         let bytes: Bytes = bytes.into();
         // The decoders of pages check what they read by assertions.
         catch_unwind(AssertUnwindSafe(|| read(&bytes, goes_on))).unwrap_or_else(|_| {
-            Err(RecordingError::Damaged(ParquetError::General("its pages are not as their headers say".to_owned())))
+            Err(RecordingError::Damaged(ParquetError::General("its pages do not match their headers".to_owned())))
         })
     }
 }
@@ -45,7 +45,7 @@ fn read(bytes: &Bytes, goes_on: GoesOn<'_>) -> Result<Recording, RecordingError>
         return Err(RecordingError::refused("it is empty: give a recording that `frixel play --record` has written"));
     }
     if !bytes.starts_with(MAGIC) {
-        let sentence = "it is no Parquet file: give a recording that `frixel play --record` has written";
+        let sentence = "it is not a Parquet file: give a recording that `frixel play --record` has written";
         let wrong = FileKind::Recording.check(bytes).err();
         return Err(RecordingError::refused(wrong.map_or(sentence.to_owned(), |wrong| wrong.to_string())));
     }
@@ -55,8 +55,8 @@ fn read(bytes: &Bytes, goes_on: GoesOn<'_>) -> Result<Recording, RecordingError>
     let (metadata, fields) = metadata_of(file.metadata())?;
     if !seal::is_whole(&whole, footer) {
         return Err(RecordingError::refused(
-            "its content has another hash than it says: it is damaged, or another program has written it anew; take another \
-             copy, or record anew",
+            "its hash does not match its content: it is damaged, or another program has rewritten it; take another \
+             copy, or record again",
         ));
     }
     claims::check_pages(&whole, file.metadata())?;
@@ -89,7 +89,7 @@ pub(super) fn footer_start(bytes: &[u8]) -> ParquetResult<usize> {
     let tail = bytes.last_chunk().ok_or_else(|| ParquetError::EOF("it has no footer".to_owned()))?;
     let len = FooterTail::try_new(tail)?.metadata_length();
     let start = bytes.len().checked_sub(TAIL_BYTES).and_then(|end| end.checked_sub(len));
-    start.ok_or_else(|| ParquetError::EOF("its footer is longer than it".to_owned()))
+    start.ok_or_else(|| ParquetError::EOF("its footer is longer than the file".to_owned()))
 }
 
 /// The file up to its last whole footer, which is all of it unless its writer was killed, and where the footer begins.
@@ -122,9 +122,7 @@ fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
             return Err(RecordingError::Damaged(error));
         }
     }
-    Err(RecordingError::refused(
-        "its end is missing, which says what the rest is, so that nothing can be read: take a whole copy, or record anew",
-    ))
+    Err(RecordingError::refused("its end, which describes the rest, is missing: take a complete copy, or record again"))
 }
 
 fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), RecordingError> {
@@ -204,7 +202,7 @@ fn read_group(
             // The values of a dictionary share their bytes, and texts do not.
             *text_bytes += texts.iter().flatten().map(|text| text.len() as u64).sum::<u64>();
             if *text_bytes > TEXTS_MAX_BYTES {
-                return Err(ParquetError::General(format!("its texts have more than {TEXTS_MAX_BYTES} bytes")));
+                return Err(ParquetError::General(format!("its strings have more than {TEXTS_MAX_BYTES} bytes")));
             }
             for bytes in texts {
                 let text = bytes.map(|bytes| bytes.as_utf8().map(str::to_owned)).transpose()?;

@@ -103,7 +103,7 @@ impl<W: Write + Send> ParquetWriter<W> {
         Ok(())
     }
 
-    /// Ends the file here, with the metadata of all that was written. [`Self::write`] may go on behind it.
+    /// Completes the file so far, with the metadata for it. [`Self::write`] may append further row groups.
     pub fn end(&mut self, metadata: &Metadata) -> Result<(), RecordingError> {
         self.end_with(pairs(metadata, &self.fields)?, &metadata.frixel)
     }
@@ -125,7 +125,7 @@ impl<W: Write + Send> ParquetWriter<W> {
         end(&mut self.writer).map_err(RecordingError::Write)
     }
 
-    /// Where the file goes. What is written there by others makes the file unreadable; a buffer may be emptied.
+    /// The underlying writer. A buffer may be emptied; other writes make the file unreadable.
     pub fn get_mut(&mut self) -> &mut W {
         &mut self.writer.inner_mut().to
     }

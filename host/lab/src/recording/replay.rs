@@ -22,7 +22,7 @@ type FileBytes = BTreeMap<String, Vec<u8>>;
 /// Why a recording cannot be played again.
 #[derive(Debug, Error)]
 pub enum ReplayError {
-    /// It is not of this rig or version, or it lacks a part of what it was played with.
+    /// It is from another rig or version, or lacks a file that it was played with.
     #[error("{0}")]
     Refused(String),
     /// Its scene or a profile has mistakes.
@@ -31,7 +31,7 @@ pub enum ReplayError {
     /// Its stroke has mistakes.
     #[error("its stroke cannot be read: {0}")]
     Stroke(#[from] StrokeFileError),
-    /// Its options describe no play.
+    /// Its options are invalid.
     #[error(transparent)]
     Options(#[from] PlayOptionsError),
     /// The play failed.
@@ -40,9 +40,9 @@ pub enum ReplayError {
 }
 
 impl Recording {
-    /// Plays a simulated recording of this version again, with the lines, scenes and samples that it has: until the
-    /// tick at which it was interrupted, or as many rows as it has, if it is cut off. `goes_on` is asked many times a
-    /// second of the play; when it breaks, the result ends there.
+    /// Replays a simulated recording of this version with its own lines, scenes and samples, up to the tick at which it
+    /// was interrupted, or to the last row of one that was cut off. `goes_on` is called many times a second of the
+    /// play; when it breaks, the result ends there.
     pub fn replay(&self, goes_on: GoesOn<'_>) -> Result<Self, ReplayError> {
         let options = options(&self.metadata)?;
         let files = files(&self.metadata.files)?;
@@ -71,11 +71,13 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, ReplayError> {
     let Metadata { frixel, rig, play, .. } = metadata;
     match rig.as_str() {
         "sim" => {}
-        "qemu" | "pico" => return Err(refused("it is of the emulated board, and only --port sim is played again")),
-        _ if metadata.is_simulated => {
-            return Err(refused("it is of a virtual board at a port, which runs in real time"));
+        "qemu" | "pico" => {
+            return Err(refused("it was made on the emulated board, and only plays of --port sim can be repeated"));
         }
-        _ => return Err(refused("it is of a board at a port, under a person's finger")),
+        _ if metadata.is_simulated => {
+            return Err(refused("it was made on a virtual board at a port, which runs in real time"));
+        }
+        _ => return Err(refused("it was made on a board at a port, under a person's finger")),
     }
     if frixel != Metadata::VERSION {
         let (found, own) = (brief(frixel), Metadata::VERSION);
@@ -101,7 +103,7 @@ fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError>
     let bytes = |(name, file): (&String, &SourceFile)| match (file.bytes(), file) {
         (Some(bytes), _) => Ok((name.clone(), bytes)),
         (None, SourceFile::Hash { .. }) => {
-            Err(refused(format!("it has only the hash of the file {}, which is large", brief(name))))
+            Err(refused(format!("it holds only the hash of the large file {}", brief(name))))
         }
         (None, _) => Err(missing(name)),
     };
@@ -179,7 +181,7 @@ fn profile<P: Profile>(option: Option<&String>, file: &str, files: &FileBytes) -
     let read = NamedProfile { name, text }.read();
     read.map(Some).map_err(|error| match error {
         ProfileError::NotBundled { kind, name, .. } => {
-            refused(format!("this frixel has no {kind} called {}: use the one that recorded it", brief(&name)))
+            refused(format!("this frixel has no {kind} named {}: use the one that recorded it", brief(&name)))
         }
         ProfileError::Mistakes(mistakes) => mistakes.into(),
     })

@@ -1,4 +1,4 @@
-//! The live changes of a recorded play, made again.
+//! Repeats the live changes of a recorded play.
 
 use std::time::Duration;
 use std::vec;

@@ -1,5 +1,5 @@
-//! The hash of a recording's file: the SHA-256 of all of its bytes, with zeros in place of its own digits. A file that
-//! grows has one in each footer, of all that comes before.
+//! The hash of a recording's file: the SHA-256 of all of its bytes, with zeros in place of its own digits. A growing
+//! file has a hash in each footer, over everything before it.
 
 use std::io::{self, Write};
 

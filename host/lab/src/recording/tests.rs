@@ -248,7 +248,7 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
         (newer, "format 2, and this frixel reads format 1"),
         (replaced("\"is_simulated\":true", "\"is_simulated\":1234"), "`frixel.recording` cannot be read"),
         (sealed(replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\"")), "not those that its metadata names"),
-        (replaced("\"participant\":\"P07\"", "\"participant\":\"P08\""), "its content has another hash than it says"),
+        (replaced("\"participant\":\"P07\"", "\"participant\":\"P08\""), "its hash does not match its content"),
     ];
     for (bytes, says) in cases {
         let error = Recording::read_parquet(bytes, TO_THE_END).unwrap_err().to_string();
@@ -283,6 +283,6 @@ fn few_ends_of_a_file_are_tried() {
     assert!(with(15, b"P").unwrap().is_cut_off);
     for (ends, rest) in [(16, &b"P"[..]), (20_000, b"P"), (1, b""), (15, b"")] {
         let error = with(ends, rest).unwrap_err().to_string();
-        assert!(error.contains("its Parquet cannot be read"), "{error}");
+        assert!(error.contains("its Parquet data cannot be read"), "{error}");
     }
 }

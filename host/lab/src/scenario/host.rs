@@ -116,7 +116,7 @@ impl<'s, 'r> Host<'s, 'r> {
     }
 
     fn player(&mut self) -> Result<&mut ScenarioPlayer<'r>, CommandFailure> {
-        let sentence = "the connection was given up: write a command `connect` before";
+        let sentence = "the connection was closed: add a command `connect` before this one";
         self.player.as_mut().ok_or_else(|| CommandFailure { sentence: sentence.to_owned(), goes_on: true })
     }
 

@@ -75,7 +75,7 @@ pub enum ScenarioError {
     #[error(transparent)]
     Compile(#[from] CompileError),
     /// The stroke is invalid.
-    #[error("{file}: no finger can go along this stroke: {source}")]
+    #[error("{file}: no finger can follow this stroke: {source}")]
     Stroke {
         /// The scenario's file.
         file: String,
@@ -94,7 +94,7 @@ pub enum ScenarioError {
         source: RigError,
     },
     /// A scene was not given.
-    #[error("{file} plays {scene}, and this scene was not given")]
+    #[error("{file} plays {scene}, which was not given")]
     NoScene {
         /// The scenario's file.
         file: String,
@@ -134,7 +134,7 @@ pub fn simulation(scenario: &Scenario, programs: &Programs, rig: &RigConfig) -> 
     Ok(Simulation { seconds: scenario.seconds, ..simulation })
 }
 
-/// The world of a scenario around a board that is not this process's, with the finger of the first scene.
+/// The world of a scenario around a board in another process, with the finger of the first scene.
 pub fn world(scenario: &Scenario, programs: &Programs, board: &Board) -> Result<World, ScenarioError> {
     let program = first_program(scenario, programs)?;
     Ok(simulation(scenario, programs, &RigConfig::of(*board))?.world(program)?)
@@ -145,7 +145,7 @@ fn first_program<'p>(scenario: &Scenario, programs: &'p Programs) -> Result<&'p 
     programs.get(&scenario.scene).ok_or_else(no_scene)
 }
 
-/// Runs a scenario on the in-process rig of `config`'s board, for which its [`programs`] are.
+/// Runs a scenario on the in-process rig. Its [`programs`] must be compiled for `config.board`.
 pub fn run_in_process(
     scenario: &Scenario,
     programs: &Programs,

@@ -43,7 +43,7 @@ impl StateHistory {
     pub(super) fn entries(&self) -> impl Iterator<Item = (u64, String)> {
         self.history.iter().map(|(tick, state, fault)| {
             let fault = fault.map_or_else(String::new, |fault| format!(" ({fault})"));
-            (*tick, format!("the board says: {state}{fault}"))
+            (*tick, format!("the board reports: {state}{fault}"))
         })
     }
 }

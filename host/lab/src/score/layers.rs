@@ -21,7 +21,7 @@ pub struct Verdicts {
     pub maybe: usize,
     /// Fingers that do not notice it.
     pub not_felt: usize,
-    /// Fingers of which no study says whether they notice it.
+    /// Fingers that no study covers.
     pub unknown: usize,
 }
 
@@ -72,13 +72,13 @@ impl FromIterator<Verdict> for Verdicts {
 pub struct LayerScore {
     /// Number and title of the layer.
     pub layer: LayerTitle,
-    /// How many notice the layer, by its contrast, its texture, or a border of it.
+    /// Verdicts on the layer, by its contrast, its texture, or one of its borders.
     pub simulated_fingers: Verdicts,
     /// Felt contrast within the layer, without the step onto it, in Weber steps.
     pub contrast_weber_steps: f64,
     /// The texture of the finger in the middle, by its distance from the threshold; absent where no finger had one.
     pub texture: Option<Texture>,
-    /// The border of it at which the largest step was felt; absent where no finger crossed one.
+    /// Its border with the largest felt step; absent where no finger crossed one.
     pub border: Option<LayerBorder>,
 }
 
@@ -98,7 +98,7 @@ pub struct LevelScore {
     pub lower: Vec<LayerTitle>,
     /// The layers with the higher friction.
     pub higher: Vec<LayerTitle>,
-    /// How many of those that touched both tell them apart.
+    /// Verdicts of the fingers that touched both on whether the levels differ.
     pub simulated_fingers: Verdicts,
     /// Median of what was felt between them, in Weber steps.
     pub weber_steps: f64,

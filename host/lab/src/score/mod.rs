@@ -29,8 +29,8 @@ pub(crate) use metric::{interval, metric_keys};
 pub(crate) use text::quoted;
 pub use trials::{TrialPlan, TrialStroke, TrialsError};
 
-/// Most threads that play side by side. Each takes memory for boards and samples, and more of them than a machine has
-/// processors are not faster.
+/// Largest number of threads that play in parallel. Each takes memory for boards and samples, and more of them than a
+/// machine has processors are not faster.
 pub const JOBS_MAX: u64 = 1000;
 /// Number of plays per thread whose samples are in memory; those of all plays would not fit.
 const PLAYS_PER_THREAD: usize = 4;
@@ -42,7 +42,7 @@ pub struct Trial {
     pub stroke_name: String,
     /// Path of the finger, which trials with other seeds share.
     pub stroke: Arc<Stroke>,
-    /// Seed of all that is random in the world.
+    /// Seed of the world's random numbers.
     pub seed: u64,
     /// The finger, if it is not the one that the scene is meant for.
     pub finger: Option<TrialFinger>,
@@ -91,8 +91,8 @@ pub struct TrialScore {
 pub struct Score {
     /// The subject of the verdict: simulated fingers.
     pub simulated: String,
-    /// Which layers the simulated fingers notice, and which levels of friction they tell apart: a sentence that names
-    /// those that some fingers do not surely notice, and those of which the strokes say nothing.
+    /// Which layers the simulated fingers notice, and which levels of friction they tell apart, as a sentence. It names
+    /// the layers that some fingers may miss, and those that no stroke reached.
     pub verdict: String,
     /// The touch source that was simulated.
     pub touch_source: TouchSource,

@@ -12,7 +12,7 @@ impl Score {
         let alike = told_apart(&levels.collect::<Vec<_>>(), self.simulated_fingers);
         let untouched: Vec<&LayerTitle> = self.untouched_layers.iter().collect();
         let untouched = (!self.layers.is_empty() && !untouched.is_empty())
-            .then(|| format!("no stroke says anything about {}", listed_briefly(&fold_copies(&untouched))));
+            .then(|| format!("no stroke reached {}", listed_briefly(&fold_copies(&untouched))));
         [Some(self.touched() + &self.noticed()), alike, untouched]
             .into_iter()
             .flatten()
@@ -33,7 +33,7 @@ impl Score {
     fn noticed(&self) -> String {
         let (fingers, layers) = (self.simulated_fingers, &self.layers);
         if layers.is_empty() {
-            return "no stroke was on a layer, driven, for long enough to say what is noticed".to_owned();
+            return "no stroke stayed on a driven layer long enough to tell what is noticed".to_owned();
         }
         let (by_all, below): (Vec<&LayerScore>, Vec<&LayerScore>) =
             layers.iter().partition(|layer| layer.simulated_fingers.is_felt_by_all());
@@ -202,13 +202,13 @@ mod tests {
     fn layers_of_which_the_strokes_say_nothing_are_named_and_not_counted() {
         let mut nothing = score(2, Vec::new(), Vec::new());
         nothing.untouched_layers = vec![title(1, None, "far")];
-        assert_eq!(nothing.sentence(), "no stroke was on a layer, driven, for long enough to say what is noticed");
+        assert_eq!(nothing.sentence(), "no stroke stayed on a driven layer long enough to tell what is noticed");
         let mut touched = score(2, bars(2, [2, 2]), Vec::new());
         touched.untouched_layers = nothing.untouched_layers;
         assert_eq!(
             touched.sentence(),
-            "2 of 3 layers were touched: 2 of 2 layers are noticed by 2 of 2 simulated fingers; no stroke says anything \
-             about layer 1 \"far\""
+            "2 of 3 layers were touched: 2 of 2 layers are noticed by 2 of 2 simulated fingers; no stroke reached \
+             layer 1 \"far\""
         );
     }
 

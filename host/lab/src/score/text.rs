@@ -52,8 +52,7 @@ impl Score {
         text
     }
 
-    /// A row for each layer, with the number of its copies: of these, the row is that of the copy that is noticed the
-    /// least surely.
+    /// A row for each layer: that of its least noticeable copy, with the number of copies.
     pub fn layer_rows(&self) -> impl Iterator<Item = (&LayerScore, usize)> {
         let tables = self.layers.chunk_by(|one, other| one.layer.number().table == other.layer.number().table);
         tables.filter_map(|copies| Some((LayerScore::least(copies)?, copies.len())))

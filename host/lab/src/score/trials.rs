@@ -18,17 +18,17 @@ const PLAYS_MAX: u64 = 100_000;
 /// Longest time of all human strokes of a score together, s: they are in memory at the same time, 40 kB a second.
 const STROKES_MAX_S: f64 = 36_000.0;
 
-/// Where a simulated finger goes.
+/// Path of a simulated finger.
 #[derive(Clone, Debug)]
 pub enum TrialStroke {
-    /// Along strokes that are made: one of its own for each number, if it is of people.
+    /// Generated strokes; for human ones, a different stroke for each number.
     Generated(GeneratedStroke),
-    /// Along this stroke.
+    /// This stroke.
     Own(Stroke),
 }
 
 impl TrialStroke {
-    /// Whether it is made like a person's, with another one for each number.
+    /// Whether it is human, with a different stroke for each number.
     pub fn is_of_people(&self) -> bool {
         matches!(self, Self::Generated(stroke) if stroke.is_of_people())
     }
@@ -47,15 +47,15 @@ pub enum TrialsError {
     #[error("no stroke can be generated for this scene's screen: {0}")]
     Stroke(#[from] StrokeError),
     /// The contact model refuses a person on this screen.
-    #[error("the contact model rejects the finger of a person: {0}")]
+    #[error("the contact model refuses the finger of a person: {0}")]
     Finger(#[from] ParameterError),
     /// A file or a sweep has its own speed.
-    #[error("a median speed is that of human strokes: leave it out, or choose the stroke `human` or `human-rough`")]
+    #[error("only human strokes have a median speed: leave it out, or choose the stroke `human` or `human-rough`")]
     SpeedOfPeople,
     /// They would not end.
     #[error(
-        "people x strokes x seeds are {plays} plays, and at most {PLAYS_MAX} are scored: give fewer, or share the work \
-         by a sweep"
+        "people x strokes x seeds are {plays} plays, and at most {PLAYS_MAX} are scored: give fewer, or split the work \
+         with a sweep"
     )]
     TooMany {
         /// Number of plays.
@@ -64,7 +64,7 @@ pub enum TrialsError {
     /// Their strokes do not fit into memory.
     #[error(
         "people x strokes x seconds are {seconds} s of strokes, and {STROKES_MAX_S} s fit into memory: give fewer or \
-         shorter ones, or share the work by a sweep"
+         shorter ones, or split the work with a sweep"
     )]
     TooLong {
         /// Duration of all strokes together, s.
@@ -75,9 +75,9 @@ pub enum TrialsError {
 /// The strokes of a finger.
 #[derive(Clone, Debug)]
 pub struct TrialPlan {
-    /// Where the finger goes.
+    /// Path of the finger.
     pub stroke: TrialStroke,
-    /// Number of strokes, if they are of people; there is one of the others.
+    /// Number of human strokes; there is one of every other kind.
     pub strokes: u64,
     /// Repetitions of each stroke.
     pub seeds: u64,
@@ -88,11 +88,11 @@ pub struct TrialPlan {
 }
 
 impl TrialPlan {
-    /// Number of strokes unless another is given.
+    /// Default number of strokes.
     pub const STROKES: u64 = 4;
-    /// Repetitions of each stroke unless others are given.
+    /// Default number of repetitions of each stroke.
     pub const SEEDS: u64 = 2;
-    /// Duration of a generated stroke unless another is given, s.
+    /// Default duration of a generated stroke, s.
     pub const SECONDS: f64 = 3.0;
     /// Allowed durations of a generated stroke in a sweep, s. A shorter stroke has no fidelity.
     pub const SWEEP_SECONDS: RangeInclusive<f64> = 0.25..=HUMAN_STROKE_MAX_S;
@@ -101,10 +101,10 @@ impl TrialPlan {
     /// Median speeds of strokes of people, mm/s.
     pub const MEDIAN_SPEEDS_MM_PER_S: RangeInclusive<f64> = 1.0..=1000.0;
 
-    /// Trials of the first `people` of an assumed population, whom the board does not know.
+    /// Trials of the first `people` of an assumed population, whose fingers the board does not know.
     ///
-    /// Without a number, of the finger of `program`, compiled from `scene`. Refuses more plays than end, and longer
-    /// strokes than fit into memory. When `goes_on` breaks, returns the trials so far.
+    /// Without a number, trials of the finger of `program`, compiled from `scene`. Refuses more plays than end, and
+    /// longer strokes than fit into memory. When `goes_on` breaks, returns the trials so far.
     pub fn of_people(
         &self,
         people: Option<u64>,
@@ -139,8 +139,8 @@ impl TrialPlan {
         Ok(())
     }
 
-    /// The trials of a finger: without one, of that which the scene is meant for. Each person makes strokes of their
-    /// own, and each play has a world seed of its own. `goes_on` is as for [`Self::of_people`].
+    /// The trials of a finger, by default the scene's. Each person has their own strokes, and each play its own world
+    /// seed. `goes_on` is as for [`Self::of_people`].
     pub fn trials(
         &self,
         program: &Program,

@@ -16,7 +16,7 @@ pub use checks::{check_duration, fraction_off_screen, side_mm, ticks_per_row};
 pub use default_stroke::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, default_stroke, endless_sweep};
 pub use options::{PlayOptions, STRAIGHT_MAX_M_PER_S, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX};
 
-/// Why options describe no play.
+/// Why the options of a play are invalid.
 #[derive(Debug, Error)]
 pub enum PlayOptionsError {
     /// Rows are not a whole number of ticks apart.
@@ -31,7 +31,7 @@ pub enum PlayOptionsError {
     },
     /// The play is shorter than a tick, or longer than a day.
     #[error(
-        "a play lasts from a tick of the board, {tick_s} s, to a day, {STROKE_MAX_S} s; found {} s",
+        "a play lasts from one tick of the board ({tick_s} s) to a day ({STROKE_MAX_S} s); found {} s",
         Shown(*.seconds)
     )]
     Duration {
@@ -51,7 +51,7 @@ pub enum PlayOptionsError {
         /// Its height, mm.
         height_mm: f64,
     },
-    /// The options describe no stroke.
+    /// The options of the stroke are invalid.
     #[error(transparent)]
     Stroke(#[from] StrokeOptionsError),
     /// The scene's screen has no default stroke, or it cannot be repeated.
@@ -61,7 +61,7 @@ pub enum PlayOptionsError {
     #[error(transparent)]
     Screen(#[from] CompileError),
     /// The contact model refuses the person on this screen.
-    #[error("the contact model rejects the finger of this person: {0}")]
+    #[error("the contact model refuses the finger of this person: {0}")]
     Person(#[from] ParameterError),
 }
 

@@ -8,11 +8,11 @@ use thiserror::Error;
 use super::REPEAT_PAUSE_S;
 use crate::GeneratedStroke;
 
-/// Most times that a finger goes along a straight stroke.
+/// Largest number of repetitions of a straight stroke.
 pub const TIMES_MAX: u32 = 100_000;
 /// Longest stroke: one day, in s.
 pub const STROKE_MAX_S: f64 = 86_400.0;
-/// Duration of a generated stroke unless another is given, s.
+/// Default duration of a generated stroke, s.
 const GENERATED_S: f64 = 10.0;
 /// Speed of a straight stroke unless another is given, m/s.
 const STRAIGHT_M_PER_S: f64 = 0.1;
@@ -46,7 +46,7 @@ pub struct PlayOptions {
     pub screen: Option<String>,
     /// The touch source, in the same way.
     pub touch: Option<String>,
-    /// Where the finger goes.
+    /// Path of the finger.
     pub stroke: StrokeOptions,
     /// Whether the scene was changed while it played, by [`Self::lines`].
     pub control: bool,
@@ -54,7 +54,7 @@ pub struct PlayOptions {
     pub stream: bool,
     /// The lines that changed it, in their order. A `replace` has the number of the scene among the later ones of the
     /// recording, from 1, and is left out if that scene could not be compiled. `None` on a board at a port, where a
-    /// line is carried out when it comes.
+    /// line takes effect on arrival.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lines: Option<Vec<String>>,
     /// Duration of the streamed file, s; `None` for samples from standard input. Without [`Self::seconds`], the play
@@ -66,7 +66,7 @@ pub struct PlayOptions {
 }
 
 impl PlayOptions {
-    /// In place of a name: the bytes are among the files of the recording.
+    /// Stands for a name whose file is stored in the recording.
     pub const FILE: &'static str = "file";
     /// Name of the stroke among the files of a recording.
     pub const STROKE: &'static str = "stroke";
@@ -93,7 +93,7 @@ pub struct StrokeOptions {
     pub to_m: Option<[f64; 2]>,
     /// Its mean speed, m/s.
     pub speed_m_per_s: Option<f64>,
-    /// How many times the finger goes along it, back and forth.
+    /// Number of passes of the finger along it, back and forth.
     pub times: Option<u32>,
     /// Whether it starts and ends at rest.
     pub minimum_jerk: bool,
@@ -105,7 +105,7 @@ pub struct StrokeOptions {
     pub human_seconds: Option<f64>,
 }
 
-/// Why options describe no stroke.
+/// Why the options of a stroke are invalid.
 #[derive(Debug, Error)]
 pub enum StrokeOptionsError {
     /// Start and end are the same.
@@ -123,10 +123,10 @@ pub enum StrokeOptionsError {
         /// Its speed, m/s.
         m_per_s: f64,
     },
-    /// The finger goes along it too often.
-    #[error("the finger goes along the stroke {times} times, more than {TIMES_MAX}: let it go less often")]
+    /// It is repeated too often.
+    #[error("the stroke is repeated {times} times, more than {TIMES_MAX}: repeat it less often")]
     TooOften {
-        /// How many times it does.
+        /// Number of repetitions.
         times: u32,
     },
     /// A straight stroke cannot be made.

@@ -1,4 +1,4 @@
-//! One simulated finger on one scene: all that its plays need, and what it noticed.
+//! One simulated finger on one scene: the input of its plays, and their result.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::parameter::{Value, has_at, nearest_field};
 use crate::GeneratedStroke;
 use crate::score::{Score, TrialFinger, TrialPlan};
 
-/// All that the plays of one simulated finger need.
+/// Input of the plays of one simulated finger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
@@ -36,7 +36,7 @@ pub struct Cell {
     pub touch: NamedProfile,
     /// Number of the simulated person, from 1.
     pub person: u64,
-    /// How the strokes are made.
+    /// Kind of the strokes.
     pub stroke: GeneratedStroke,
     /// Number of strokes.
     pub strokes: u64,
@@ -50,7 +50,7 @@ pub struct Cell {
     pub ideal: bool,
 }
 
-/// What one finger noticed of a layer.
+/// Result of one finger on a layer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LayerResult {
     /// Number and name of the layer.
@@ -63,7 +63,7 @@ pub struct LayerResult {
     pub contrast_weber_steps: f64,
 }
 
-/// What one finger noticed.
+/// Result of one finger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellResult {
     /// Key of the cell.
@@ -93,7 +93,10 @@ pub struct CellResult {
 #[derive(Debug, Error)]
 pub enum CellError {
     /// The cell is of another version.
-    #[error("this cell is of frixel {found}, and this is {}: make the cells anew from their plan", env!("CARGO_PKG_VERSION"))]
+    #[error(
+        "this cell is from frixel {found}, and this is {}: make the cells again from their plan",
+        env!("CARGO_PKG_VERSION")
+    )]
     OtherVersion {
         /// Version of the cell.
         found: String,
@@ -101,7 +104,7 @@ pub enum CellError {
     /// The scene has mistakes.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// A parameter is no field of the scene, and one that the scene has is like it.
+    /// A parameter is not a field of the scene, but resembles one.
     #[error("{source}; did you mean `{nearest}`?")]
     Misspelt {
         /// The field that the scene has.
@@ -165,7 +168,7 @@ impl Cell {
         Ok(self.result(&score, program.header.voltage_max_v_rms.into()))
     }
 
-    /// Compiles the cell's scene, without playing it. A mistake in one cell is in those of all people.
+    /// Compiles the cell's scene, without playing it. Its mistakes are the same for all people.
     pub fn check(&self) -> Result<(), CellError> {
         self.compiled().map(drop)
     }

@@ -33,7 +33,7 @@ impl Source {
     }
 }
 
-/// A plan with hashes of the scenes that it names: all that the keys of its cells depend on.
+/// A plan with hashes of the scenes that it names: the data on which the keys of its cells depend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Index {
@@ -98,7 +98,7 @@ impl Sweep {
         &self.index
     }
 
-    /// Subject of a cell's error: the plan's line of the parameter to blame, if one is, then scene and values.
+    /// Subject of a cell's error: the plan's line of the parameter at fault, if any, then scene and values.
     pub fn blame(&self, cell: &Cell, error: &CellError) -> String {
         match cell.blamed(error) {
             Some(path) => format!("{}: {}", self.places.of_parameter(path), cell.titled(|other| other == path)),

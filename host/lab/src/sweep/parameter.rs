@@ -136,8 +136,8 @@ impl Misplaced<'_> {
     fn in_scene(self, scene: &str) -> String {
         match self {
             Self::Part(part) => format!(
-                "\"{}\" is no place for a value in {scene}; a path is that of one field, such as \
-                 \"drive.voltage_max_v_rms\" or \"layer.2.high_n\"",
+                "\"{}\" is not a field of {scene}: give the path of one field, such as \"drive.voltage_max_v_rms\" or \
+                 \"layer.2.high_n\"",
                 brief(part)
             ),
             Self::Layer(found, count) => {
@@ -219,10 +219,10 @@ mod tests {
             ("layer.first.high_n", "no layer first"),
             ("layer.0.high_n", "no layer 0"),
             ("layer.1", "no place for a value"),
-            ("layer", "\"layer\" is no place for a value"),
-            ("layer.2.region", "\"region\" is no place for a value"),
-            ("version.x_mm", "\"version\" is no place for a value"),
-            ("layer.1.kind.x", "\"kind\" is no place for a value"),
+            ("layer", "\"layer\" is not a field"),
+            ("layer.2.region", "\"region\" is not a field"),
+            ("version.x_mm", "\"version\" is not a field"),
+            ("layer.1.kind.x", "\"kind\" is not a field"),
             ("", "no place for a value"),
         ] {
             let error = set(path, &value).unwrap_err();

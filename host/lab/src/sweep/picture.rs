@@ -1,4 +1,4 @@
-//! The picture of a sweep: which share of the simulated fingers notices what.
+//! The picture of a sweep: the share of the simulated fingers that notice each layer.
 
 use frixel_chart::{Axis, Chart, DrawError, Line, Look, Mark, PALETTE, Panel};
 use frixel_scene::printable_lines;

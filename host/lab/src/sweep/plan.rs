@@ -19,7 +19,7 @@ const CELLS_MAX: usize = 1_000_000;
 /// Most parts of a parameter's path.
 const PATH_PARTS_MAX: usize = 64;
 
-/// Which cells there are: every combination of what the lists have.
+/// Defines the cells: every combination of the values of the lists.
 ///
 /// ```
 /// use frixel_lab::sweep::Plan;
@@ -45,7 +45,7 @@ pub struct Plan {
     pub touch: Vec<String>,
     /// Number of simulated people, from the first one.
     pub people: u64,
-    /// How their strokes are made.
+    /// Kind of their strokes.
     #[serde(default)]
     pub stroke: GeneratedStroke,
     /// Strokes of each person.
@@ -134,7 +134,7 @@ pub struct Range {
     pub from: f64,
     /// The last one.
     pub to: f64,
-    /// How many, at least 2.
+    /// Number of values, at least 2.
     pub count: u32,
 }
 
@@ -218,7 +218,7 @@ fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (before.matches('\n').count() + 1, before.get(line_start..).unwrap_or_default().chars().count() + 1)
 }
 
-/// Why there are no cells, in a sentence that names the file and the field.
+/// Why a plan is invalid, in a sentence that names the file and the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct PlanError(pub(super) String);
@@ -300,7 +300,7 @@ impl Plan {
         }
         match self.cells() {
             found if found > CELLS_MAX => Err(PlanError(format!(
-                "{}: there are {found} combinations, and at most {CELLS_MAX} in one sweep: make several plans of it",
+                "{}: the plan has {found} combinations, and a sweep at most {CELLS_MAX}: split it into several plans",
                 self.places.file
             ))),
             _ => Ok(()),

@@ -1,4 +1,4 @@
-//! The result of a cell as files and messages have it: a line of JSON that begins with the hash of the rest.
+//! The result of a cell as text: a line of JSON that begins with the hash of the rest.
 
 use thiserror::Error;
 
@@ -16,8 +16,8 @@ pub enum CellResultError {
     /// The text is not JSON of a result.
     #[error(transparent)]
     NoResult(#[from] serde_json::Error),
-    /// It has no hash, or another one than its content.
-    #[error("its content has another hash than it says, or none: it was changed or damaged")]
+    /// Its hash is missing or does not match its content.
+    #[error("its hash is missing or does not match its content: it was changed or damaged")]
     Changed,
 }
 

@@ -1,4 +1,4 @@
-//! The results of many cells together: which share of the simulated fingers notices what.
+//! The combined results of many cells: the share of the simulated fingers that notice each layer.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub struct LayerShare {
     pub table: usize,
     /// How many of the fingers that touched it notice it.
     pub simulated_fingers: Verdicts,
-    /// Share of those that touched it who surely notice it.
+    /// Share of the fingers that touched it and notice it with certainty.
     pub felt_share: f64,
     /// 95 % interval of that share among people like these (Wilson 1927, doi:10.1080/01621459.1927.10502953).
     pub interval: [f64; 2],
@@ -40,7 +40,7 @@ pub struct Group {
     pub screen: Option<String>,
     /// Name of the touch source.
     pub touch: String,
-    /// What each finger noticed, by the number of the person.
+    /// Result of each finger, by the number of the person.
     pub fingers: Vec<CellResult>,
 }
 
@@ -52,7 +52,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// Puts the results of cells together, which are in the order of their plan.
+    /// Combines the results of cells, given in the order of their plan.
     pub fn new(results: impl IntoIterator<Item = CellResult>) -> Self {
         let mut groups: Vec<Group> = Vec::new();
         for result in results {
@@ -126,12 +126,12 @@ impl Group {
         least_of_copies(shares(self.fingers.iter().filter(|finger| range.contains(&finger.moisture))))
     }
 
-    /// What the group is called beside others: the values that it has.
+    /// Label of the group: its scene, parameter values, screen and touch source.
     pub fn title(&self) -> String {
         self.title_without("")
     }
 
-    /// The same without the field of this path.
+    /// Like [`Self::title`], without the field of this path.
     pub fn title_without(&self, path: &str) -> String {
         let values = self.parameters.iter().filter(|(other, _)| *other != path);
         let values = values.map(|(path, value)| format!("{path} = {value}"));

@@ -19,8 +19,8 @@ pub enum StudyError {
     /// The picture cannot be drawn.
     #[error("the picture of a study cannot be drawn ({0})")]
     Picture(#[from] DrawError),
-    /// A table is too much for Parquet.
-    #[error("a table of a study is refused: {0}")]
+    /// A table exceeds the limits of a recording.
+    #[error("a table of a study cannot be stored: {0}")]
     Table(#[from] RecordingError),
 }
 
@@ -35,11 +35,11 @@ impl Study {
         columns.extend([
             texts("layer", "number and name of the layer", shares().map(|share| share.layer.clone())),
             wholes("simulated_fingers", "simulated fingers that touched it", verdicts().map(|count| count.touched)),
-            wholes("felt", "those that notice it", verdicts().map(|count| count.felt)),
-            wholes("maybe", "those near the threshold", verdicts().map(|count| count.maybe)),
-            wholes("not_felt", "those that do not notice it", verdicts().map(|count| count.not_felt)),
-            wholes("unknown", "those of which no study says it", verdicts().map(|count| count.unknown)),
-            numbers("felt_share", "", "share of those that notice it", shares().map(|share| Some(share.felt_share))),
+            wholes("felt", "fingers that notice it", verdicts().map(|count| count.felt)),
+            wholes("maybe", "fingers near the threshold", verdicts().map(|count| count.maybe)),
+            wholes("not_felt", "fingers that do not notice it", verdicts().map(|count| count.not_felt)),
+            wholes("unknown", "fingers that no study covers", verdicts().map(|count| count.unknown)),
+            numbers("felt_share", "", "share of fingers that notice it", shares().map(|share| Some(share.felt_share))),
             numbers(
                 "felt_share_low",
                 "",

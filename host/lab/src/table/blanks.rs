@@ -1,4 +1,4 @@
-//! Columns that any number of blanks separates, as one blank separates them.
+//! Reduces any number of blanks between columns to one.
 
 use std::io::{self, Read};
 

@@ -1,4 +1,4 @@
-//! Which line of an input a byte stands in, and one sign for comments.
+//! Finds the line of a byte in an input, and replaces every comment sign by `#`.
 
 use std::collections::VecDeque;
 use std::io::{self, Read};

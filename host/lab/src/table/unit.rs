@@ -33,7 +33,7 @@ const LENGTHS: &[Scale] = &[
 ];
 const SPEEDS: &[Scale] = &[scale("m/s", "m/s", 0), scale("mm/s", "mm/s", -3), scale("cm/s", "cm/s", -2)];
 
-/// The unit in which a caller takes the numbers of a column.
+/// The unit that a caller expects for a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
     /// All units of the quantity.

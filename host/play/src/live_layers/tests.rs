@@ -88,7 +88,7 @@ fn a_trigger_of_a_layer_that_time_does_not_play_is_refused() {
         layers.change(layer, Some(false), None).expect("it is live");
         let refused = layers.trigger(layer, ms(0), 0.1).expect_err("nothing would be felt").to_string();
         let sentence =
-            format!("{layer:?} is {what}, so that a trigger may play nothing: trigger a `vibration` or a `constant`");
+            format!("{layer:?} is {what}, so a trigger might play nothing: trigger a `vibration` or a `constant`");
         assert_eq!(refused, sentence);
     }
 }
@@ -100,8 +100,8 @@ fn a_trigger_of_no_gain_is_refused() {
     let refused = layers.trigger("ping", ms(0), 0.1).expect_err("nothing would be felt");
     assert_eq!(
         refused.to_string(),
-        "layer \"ping\" has a gain of 0 and adds nothing, so that a trigger plays nothing: give it one first, by \
-         `layer \"ping\" gain 1`"
+        "layer \"ping\" has a gain of 0, so a trigger would play nothing: set its gain first with `layer \"ping\" gain \
+         1`"
     );
     // Other blends cut the layers below out, or silence them.
     for blend in ["replace", "multiply"] {

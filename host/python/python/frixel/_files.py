@@ -14,8 +14,8 @@ def name_of(path: str | PathLike[str]) -> str:
     return str(checked_path("path", path)).encode(errors="replace").decode()
 
 
-def read_bytes(path: str | PathLike[str], what: str, error: type[FrixelError], *, is_toml: bool = False) -> bytes:
-    """The bytes of a regular file of at most 512 MiB, or 4 MiB if it is TOML. `what` is its name in messages.
+def read_bytes(path: str | PathLike[str], error: type[FrixelError], *, is_toml: bool = False) -> bytes:
+    """The bytes of a regular file of at most 512 MiB, or 4 MiB if it is TOML.
 
     Raises an `error` with a sentence.
     """
@@ -23,4 +23,4 @@ def read_bytes(path: str | PathLike[str], what: str, error: type[FrixelError], *
         return _frixel.read_file(checked_path("path", path), is_toml)
     except OSError as reason:
         sentence = reason.strerror or reason
-        raise error(f"{path}: {what} cannot be read ({sentence}): check the path") from reason
+        raise error(f"{path} cannot be read ({sentence}): check the path") from reason

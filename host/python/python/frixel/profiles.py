@@ -59,7 +59,7 @@ class _Profile:
         SceneError
             The file cannot be read, or has mistakes.
         """
-        text = read_bytes(path, f"this {cls.kind}", SceneError, is_toml=True)
+        text = read_bytes(path, SceneError, is_toml=True)
         return cls(text.decode(errors="replace"), name_of(path))
 
     @classmethod

@@ -78,7 +78,7 @@ class Recording(Mapping[str, NDArray[Any]]):
         SceneError
             Its scene cannot be compiled: it has another version, or a picture was too large for the file.
         """
-        content = read_bytes(path, "this recording", PlayError)
+        content = read_bytes(path, PlayError)
         columns, text, files, profiles, made, is_cut_off = _frixel.read_parquet(content, name_of(path))
         if is_cut_off:
             warnings.warn(f"{name_of(path)} was cut off: it ends with its last whole rows", FrixelWarning, stacklevel=2)
@@ -215,4 +215,4 @@ def replay(path: str | PathLike[str]) -> int:
         The bits differ, or the recording cannot be played again: it is from a board at a port, or of another version.
         The message says where, or why.
     """
-    return _frixel.replay(read_bytes(path, "this recording", PlayError), name_of(path))
+    return _frixel.replay(read_bytes(path, PlayError), name_of(path))

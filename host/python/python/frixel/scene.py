@@ -63,7 +63,7 @@ class Scene:
         SceneError
             The file cannot be read, or has mistakes; each is listed with line and column.
         """
-        text = read_bytes(path, "this scene file", SceneError, is_toml=True)
+        text = read_bytes(path, SceneError, is_toml=True)
         return cls(text, name_of(path), folder=str(Path(path).parent))
 
     @classmethod

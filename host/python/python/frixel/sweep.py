@@ -63,7 +63,7 @@ def cells(plan: str | PathLike[str] | Mapping[str, Any]) -> list[str]:
         sources = {name: (scene.text, scene.compiled.files) for name, scene in named.items()}
         return _frixel.sweep_cells(text.encode(), "<plan>", "", sources)
     path = checked_path("plan", plan)
-    content = read_bytes(path, "this plan", ParameterError, is_toml=True)
+    content = read_bytes(path, ParameterError, is_toml=True)
     return _frixel.sweep_cells(content, name_of(path), str(path.parent), {})
 
 
@@ -144,7 +144,7 @@ class Study:
         except OSError as error:
             raise FrixelError(f"{folder}: this study cannot be written ({error.strerror})") from error
         for path in there:
-            if read_bytes(path, "this study", FrixelError) != files[path]:
+            if read_bytes(path, FrixelError) != files[path]:
                 raise FrixelError(
                     f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
                 )

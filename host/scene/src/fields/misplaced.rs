@@ -139,7 +139,7 @@ pub(super) fn explained(text: &str, offset: usize, reason: &str) -> (usize, Stri
     match invisible(line).filter(|(place, _)| line_start + place > 0) {
         Some((place, said)) => (line_start + place, said),
         None => match value_at(line, offset - line_start).filter(|value| has_unit(value)) {
-            Some(value) => (offset, format!("`{}` is no number; {UNIT_ADVICE}", brief(value))),
+            Some(value) => (offset, format!("`{}` is not a number; {UNIT_ADVICE}", brief(value))),
             None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
         },
     }
@@ -199,7 +199,7 @@ fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> Stri
     } else if let Some(lower) = value.map(str::to_ascii_lowercase).filter(|value| value == "true" || value == "false") {
         format!("; write it in lower case: {lower}")
     } else if let Some(words) = value.filter(|value| are_bare_words(value)) {
-        format!("; write a text in quotation marks: \"{}\"", brief(words))
+        format!("; write a string in quotation marks: \"{}\"", brief(words))
     } else {
         String::new()
     }

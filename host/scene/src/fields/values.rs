@@ -172,7 +172,7 @@ impl<'i> Fields<'i> {
             }
             return Some(text.clone().into_owned());
         }
-        log.add(value.span().start, wrong_type(field, "a text in quotes", value.get_ref()));
+        log.add(value.span().start, wrong_type(field, "a string in quotes", value.get_ref()));
         None
     }
 
@@ -285,7 +285,7 @@ impl<'i> Fields<'i> {
 
     /// A list of texts, each with its offset.
     pub(crate) fn texts(&mut self, log: &mut Log, field: &FieldSpec) -> Option<Vec<(usize, String)>> {
-        let list = self.list(log, field, "a list of texts in square brackets")?;
+        let list = self.list(log, field, "a list of strings in square brackets")?;
         all(list.iter().map(|value| Some((value.span().start, Self::text_of(log, field.name, value)?))))
     }
 

@@ -28,7 +28,7 @@ pub(crate) enum FieldMistake {
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType { field: &'static str, expected: &'static str, found: &'static str },
     /// A number is in quotation marks.
-    #[error("`{field}` must be a number, found a text: {advice}")]
+    #[error("`{field}` must be a number, found a string: {advice}")]
     QuotedNumber { field: &'static str, advice: &'static str },
     /// A value is not a table.
     #[error("`{field}` must be a table, found {found}: write {write}")]

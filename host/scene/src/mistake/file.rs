@@ -74,7 +74,7 @@ pub(crate) enum FileMistake {
     )]
     FileMissing { what: &'static str, file: String, folder: String, nearest: Option<String> },
     /// The name of a file is empty.
-    #[error("`{field}` names no file: write its name between the quotation marks")]
+    #[error("`{field}` is empty: write a file name between the quotation marks")]
     NoFileName { field: &'static str },
     /// A file cannot be used.
     #[error("{what} \"{}\" cannot be used: {reason}", brief(.file))]

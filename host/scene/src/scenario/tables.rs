@@ -84,7 +84,7 @@ pub(super) mod command {
 
     pub(crate) const DO: FieldSpec = word("do", Mistake, "what the host does");
     pub(crate) const LAYER: FieldSpec =
-        FieldSpec::new("layer", Holds::Text, Mistake, "the layer's name, or its number as a text");
+        FieldSpec::new("layer", Holds::Text, Mistake, "the layer's name, or its number as a string");
     pub(crate) const GAIN: FieldSpec =
         number("gain", Range::new(-GAIN_MAX, GAIN_MAX, ""), Means("as it is"), "the layer's gain");
     pub(crate) const SCENE: FieldSpec = FieldSpec::new("scene", Holds::Text, Mistake, "file of the next scene");

@@ -39,7 +39,7 @@ fn found_n(field: &dyn Field, cell: Cell) -> Interval<f64> {
 #[test]
 fn extremes_hold_all_over_a_cell() {
     for formula in samples().flat_map(|sample| sample.formulas) {
-        let program = compile_text(&format!("version = 1\n{}", formula.words)).expect(formula.name);
+        let program = compile_text(&format!("version = 1\n{}", formula.toml)).expect(formula.name);
         let reference = Reference::new(&program);
         let mut random = Random::new(1);
         for piece in reference.pieces() {

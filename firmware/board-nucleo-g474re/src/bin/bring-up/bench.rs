@@ -60,7 +60,8 @@ impl NucleoBench {
 
     fn check_storage(&mut self) -> bool {
         if self.flash.is_none() {
-            self.terminal.say(format_args!("The flash is not in two banks: set the option byte DBANK, clear BFB2."));
+            self.terminal
+                .say(format_args!("The flash is not in dual-bank mode: set the option bit DBANK and clear BFB2."));
         }
         self.flash.is_some()
     }

@@ -91,7 +91,7 @@ impl Shared {
     pub(super) fn write_to(&self, mut port: Box<dyn SerialPort>) {
         while let Some(bytes) = self.next_to_write() {
             if let Err(error) = port.write_all(&bytes) {
-                return self.close(self.lock(), format!("it takes no more bytes: {error}"));
+                return self.close(self.lock(), format!("it accepts no more bytes: {error}"));
             }
         }
     }

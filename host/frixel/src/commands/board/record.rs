@@ -61,8 +61,8 @@ pub(super) fn run(args: &RecordArgs) -> Result<()> {
         let (writer, text) = recording.resume()?;
         let other = |error: TableError| {
             anyhow!(
-                "{} is not a recorded stroke with t_s,x_mm,y_mm ({}): correct or delete the row, or record anew \
-                 with --overwrite",
+                "{} is not a recorded stroke with t_s,x_mm,y_mm ({}): correct or delete the row, or record again with \
+                 --overwrite",
                 recording.partial().display(),
                 error.found()
             )

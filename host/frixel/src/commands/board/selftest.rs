@@ -80,7 +80,7 @@ pub(super) fn run(args: &SelftestArgs) -> Result<()> {
     }
     let failed = checks.iter().filter(|check| check.passed == Some(false)).count();
     if failed > 0 {
-        bail!("{failed} of the checks of {} failed; docs/board/hardware.md says what each part needs", args.port);
+        bail!("failed checks on {}: {failed}; docs/board/hardware.md lists what each part needs", args.port);
     }
     Ok(())
 }

@@ -124,14 +124,14 @@ pub(super) fn run(args: &FitArgs) -> Result<()> {
     let path = &args.data;
     if let (Law::Empirical, Some(found)) = (args.law, args.voltage) {
         bail!(
-            "--voltage {found} states the friction of the contact model, and an empirical law is stated at the highest \
+            "--voltage {found} is for the contact model, and an empirical law always states friction at the highest \
              voltage of the data: leave --voltage out"
         );
     }
     if args.law == Law::Empirical && (args.carrier_hz.is_some() || args.sine) {
         bail!(
-            "--carrier-hz and --sine correct the contact model, and an empirical law is not corrected: it holds under \
-             the carrier of its measurement; leave them out"
+            "--carrier-hz and --sine correct the contact model, and an empirical law needs no correction, since it \
+             holds for the carrier of its measurement: leave them out"
         );
     }
     let (screen_name, screen) = screen(args.screen.as_deref())?;

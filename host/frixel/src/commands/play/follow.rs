@@ -186,12 +186,12 @@ impl<L: RecordedLink> Play<'_, L> {
         let interrupted = is_requested && target.is_virtual_time();
         if interrupted {
             let seconds = self.plan.seconds();
-            note(format_args!("interrupted: what follows is of the first {played_s:.3} s of {seconds:.3} s"));
+            note(format_args!("interrupted after {played_s:.3} of {seconds:.3} s: the results below cover that part"));
         }
         if let Some(line) = self.control.as_ref().and_then(|control| control.waiting_line(played_s)) {
             note(format_args!(
-                "frixel: line {line} of standard input waits longer than the play, which ended at {played_s:.3} s: \
-                 lines after it were not carried out"
+                "frixel: line {line} of standard input waits until after the end of the play at {played_s:.3} s: the \
+                 lines after it did not run"
             ));
         }
         let rows = recorder.take_rows();

@@ -69,7 +69,7 @@ impl PlayFiles {
         let is_kept = |name| is_of_person(&args.out.join(name));
         if !args.overwrite && (is_kept("felt.csv") || is_kept("summary.json")) {
             bail!(
-                "{} has a play on a real board, which no other play replaces: give another folder to {OPTION}, or add \
+                "{} holds a play on a real board, which is not overwritten: give another folder to {OPTION}, or add \
                  --overwrite",
                 args.out.display()
             );

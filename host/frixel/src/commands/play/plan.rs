@@ -44,7 +44,10 @@ pub(super) struct Plan {
 pub(super) fn check_options(args: &PlayArgs, target: Target) -> Result<()> {
     let (port, csv_hz) = (&args.port, args.csv_hz);
     if args.control && args.stream.is_standard_input() {
-        bail!("standard input has either the lines of --control or the samples of --stream -: give --stream a file");
+        bail!(
+            "standard input cannot carry both the lines of --control and the samples of --stream -: give --stream a \
+             file"
+        );
     }
     match target {
         Target::Qemu | Target::Pico if args.watch => bail!(

@@ -35,7 +35,7 @@ pub(in crate::commands) fn run(args: &ReplayArgs) -> Result<()> {
     let (rows, columns) = (recorded.rows(), recorded.columns.len());
     if recorded.is_cut_off {
         bail!(
-            "{}: its first {rows} rows play the same bits, and the bytes behind them are no rows: the file was \
+            "{}: its first {rows} rows play the same bits, but the bytes after them are not rows: the file was \
              changed, or its last write was cut off",
             path.display()
         );

@@ -86,7 +86,7 @@ impl LogJoin {
     fn too_short(&self) -> anyhow::Error {
         let end_s = self.start_s + self.waiting.back().map_or(0.0, |(last, _)| last.t_s);
         anyhow!(
-            "{} ends {:.1} s before the play did: give the felt.csv of the `frixel sim` whose port this is",
+            "{} ends {:.1} s before the play did: give the felt.csv of the `frixel sim` that has this port",
             self.log.path().display(),
             end_s - self.log.end_s()
         )

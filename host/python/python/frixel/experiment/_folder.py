@@ -89,7 +89,7 @@ class Folder:
     def recording(self, name: str) -> bytes:
         """The bytes of a recording, checked against its SHA-256."""
         try:
-            content = read_bytes(self._path / name, "this recording", ExperimentError)
+            content = read_bytes(self._path / name, ExperimentError)
         except ExperimentError as error:
             raise ExperimentError(f"{error}, or take it from a copy") from error
         found = sha256(content)
@@ -139,7 +139,7 @@ class Folder:
             self._write_manifest(begun)
             return begun
         try:
-            earlier = json.loads(read_bytes(path, "the manifest", ExperimentError))
+            earlier = json.loads(read_bytes(path, ExperimentError))
         except ValueError as error:
             raise ExperimentError(f"{path.name} is not a manifest ({error}): give another folder") from error
         for name, value in manifest.items():
@@ -194,7 +194,7 @@ def _rows(path: Path) -> list[dict[str, Any]]:
     """The whole lines of a file. Removes the part of a line that a crash has left."""
     if not path.exists():
         return []
-    content = read_bytes(path, "the file of the trials", ExperimentError)
+    content = read_bytes(path, ExperimentError)
     whole = content[: content.rfind(b"\n") + 1]
     if len(whole) < len(content):
         with path.open("r+b") as file:

@@ -57,10 +57,9 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
     match (report.stopped(), report.failed()) {
         (Some(reason), _) => bail!("the board at {port} stopped the self-test: {}", reason.trim_end_matches('.')),
         (None, 0) => print_line("Passed."),
-        (None, failed) => bail!(
-            "{failed} of the measurements of {port} are out of their range; docs/board/first-board.md says what each \
-             means"
-        ),
+        (None, failed) => {
+            bail!("measurements out of range on {port}: {failed}; docs/board/first-board.md explains each")
+        }
     }
 }
 

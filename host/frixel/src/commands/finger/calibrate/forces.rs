@@ -99,6 +99,6 @@ mod tests {
             StandardInput::read_from(input, None).after(Duration::from_mins(1))
         };
         assert_eq!(read(10_000).unwrap(), [b'7'; 10_000]);
-        assert_eq!(read(10_001).unwrap_err().to_string(), "it goes on after 10000 bytes, the most that are read");
+        assert_eq!(read(10_001).unwrap_err().to_string(), "it is longer than 10000 bytes, the most that are read");
     }
 }

@@ -6,17 +6,17 @@ use frixel_scene::brief;
 
 use super::error::FitError;
 
-/// Largest number of faults that are described; further strokes are only named.
+/// Largest number of defects that are described; further strokes are only named.
 const DESCRIBED: usize = 6;
 /// Largest fraction of the strokes that may be odd; they are left out.
 const LEFT_OUT_PART: f64 = 0.25;
 
 /// Why a stroke cannot be used.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Fault {
+pub enum StrokeDefect {
     /// It is too short.
     Short {
-        /// How short it is.
+        /// Its length, in words.
         found: String,
     },
     /// Its load is not that of the others.
@@ -42,17 +42,17 @@ pub enum Fault {
 
 /// A stroke that cannot be used.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FaultyStroke {
+pub struct DefectiveStroke {
     /// Name of the stroke.
     pub stroke: String,
-    /// The fault.
-    pub fault: Fault,
+    /// The defect.
+    pub defect: StrokeDefect,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for StrokeDefect {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Short { found } => write!(formatter, "too short, {found}, where 0.4 s and 5 rows are the least"),
+            Self::Short { found } => write!(formatter, "too short ({found}): at least 0.4 s and 5 rows are needed"),
             Self::Load { load_n, percent, median_n } => write!(
                 formatter,
                 "its load of {load_n:.3} N is {percent:.0} % off the median load of {median_n:.3} N, more than 15 %"
@@ -66,51 +66,55 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for FaultyStroke {
+impl fmt::Display for DefectiveStroke {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { stroke, fault } = self;
-        let verb = match fault {
-            Fault::Short { .. } => " is",
-            Fault::Load { .. } | Fault::Speed { .. } => ":",
-            Fault::NoSlip { .. } => "",
+        let Self { stroke, defect } = self;
+        let verb = match defect {
+            StrokeDefect::Short { .. } => " is",
+            StrokeDefect::Load { .. } | StrokeDefect::Speed { .. } => ":",
+            StrokeDefect::NoSlip { .. } => "",
         };
-        write!(formatter, "stroke {}{verb} {fault}", brief(stroke))
+        write!(formatter, "stroke {}{verb} {defect}", brief(stroke))
     }
 }
 
-/// The strokes with faults, as far as they have been found.
+/// The strokes with defects, as far as they have been found.
 #[derive(Debug, Default)]
-pub(super) struct Faults {
-    pub(super) faulty: Vec<FaultyStroke>,
+pub(super) struct Defects {
+    pub(super) defective: Vec<DefectiveStroke>,
     /// Number of all strokes.
     pub(super) strokes: usize,
 }
 
-impl Faults {
-    pub(super) fn push(&mut self, stroke: &str, fault: Fault) {
-        self.faulty.push(FaultyStroke { stroke: stroke.to_owned(), fault });
+impl Defects {
+    pub(super) fn push(&mut self, stroke: &str, defect: StrokeDefect) {
+        self.defective.push(DefectiveStroke { stroke: stroke.to_owned(), defect });
     }
 
     /// Fails if a person has to look at the recording: if more than a few strokes are odd, or if friction itself shows
     /// that a finger stuck. Leaving those out would select among results.
     pub(super) fn check(&self) -> Result<(), FitError> {
-        let has_stuck = self.faulty.iter().any(|faulty| matches!(faulty.fault, Fault::NoSlip { .. }));
-        if has_stuck || self.faulty.len() as f64 > LEFT_OUT_PART * self.strokes as f64 { self.refuse() } else { Ok(()) }
+        let has_stuck = self.defective.iter().any(|defective| matches!(defective.defect, StrokeDefect::NoSlip { .. }));
+        if has_stuck || self.defective.len() as f64 > LEFT_OUT_PART * self.strokes as f64 {
+            self.refuse()
+        } else {
+            Ok(())
+        }
     }
 
-    /// Fails if there are faults.
+    /// Fails if there are defects.
     pub(super) fn refuse(&self) -> Result<(), FitError> {
-        if self.faulty.is_empty() { Ok(()) } else { Err(FitError::FaultyStrokes(self.faulty.clone())) }
+        if self.defective.is_empty() { Ok(()) } else { Err(FitError::DefectiveStrokes(self.defective.clone())) }
     }
 }
 
-/// The faults in a sentence: the first of them in words, and all strokes for `--without`.
-pub(super) fn sentence(faulty: &[FaultyStroke]) -> String {
-    let described: Vec<String> = faulty.iter().take(DESCRIBED).map(ToString::to_string).collect();
-    let mut names: Vec<_> = faulty.iter().map(|faulty| brief(&faulty.stroke)).collect();
+/// The defects in a sentence: the first of them in words, and all strokes for `--without`.
+pub(super) fn sentence(defective: &[DefectiveStroke]) -> String {
+    let described: Vec<String> = defective.iter().take(DESCRIBED).map(ToString::to_string).collect();
+    let mut names: Vec<_> = defective.iter().map(|defective| brief(&defective.stroke)).collect();
     // Pieces of one stroke.
     names.dedup();
-    let (it, more) = match faulty.len() {
+    let (it, more) = match defective.len() {
         0 | 1 => ("it", String::new()),
         count if count > DESCRIBED => ("them", format!("; and {} more", count - DESCRIBED)),
         _ => ("them", String::new()),
