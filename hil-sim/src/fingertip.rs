@@ -184,7 +184,7 @@ impl Fingertip {
     fn press(&mut self, measured_load_n: Option<f64>, voltage_v_rms: f64) {
         let load_n = measured_load_n.unwrap_or_else(|| self.wander.load_n(self.profile_load_n));
         let compared_v_rms = voltage_v_rms.max(COMPARED_V_RMS);
-        // Keep the previous load if the model rejects this one.
+        // Keep the previous load if the model refuses this one.
         let Ok(law) = self.profile.under_load(load_n) else { return };
         if law != self.law {
             self.law = law;

@@ -148,7 +148,7 @@ fn place(position: &str) -> Option<(u32, u32)> {
     Some((connector.parse().ok()?, number.parse().ok()?))
 }
 
-/// A table of pins and supplies by position. `on_board` says where a pin leads that has no net.
+/// A table of pins and supplies by position. `on_board` has the destination of a pin without a net.
 fn pin_table(carrier: &Carrier, pins: &[Pin], supplies: &[Supply], on_board: &str) -> String {
     let mut text = String::from("| position | pin | net | to | function | module |\n|---|---|---|---|---|---|\n");
     let others = |name: &str| {

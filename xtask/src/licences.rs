@@ -156,7 +156,7 @@ fn read(path: &Path) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    /// Their manifests say BSD-3-Clause, which is none of frixel's licences.
+    /// Their manifests say BSD-3-Clause, which is not one of frixel's licences.
     #[test]
     fn crates_by_raspberry_pi_have_the_text_of_their_licence() {
         let of = |name: &str, license: &str| without_file(&serde_json::json!({ "name": name, "license": license }));

@@ -47,7 +47,7 @@ const BOOT: &str = "boot.js";
 const WIDGET: &str = "host/studio/web/element/widget.js";
 /// The module of the widget, in the Python package.
 const WIDGET_MODULE: &str = "host/python/python/frixel/widget.js";
-/// Folders and files that are no part of the page.
+/// Folders and files that are not part of the page.
 const IGNORED: [&str; 4] = ["node_modules", "entry.js", "chart_entry.js", "widget.js"];
 /// The files that a script carries, by their names in it.
 type Files = BTreeMap<String, Vec<u8>>;

@@ -147,7 +147,7 @@ fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
     assert!(count > 200, "{count}");
 }
 
-/// The anchors of a page's headings, as GitHub makes them. A line in a code fence is no heading.
+/// The anchors of a page's headings, as GitHub makes them. A line in a code fence is not a heading.
 fn anchors(text: &str) -> Vec<String> {
     let mut is_code = false;
     let mut found = Vec::new();

@@ -132,7 +132,7 @@ fn clear_flags() {
     FLASH.sr().modify(|_| {});
 }
 
-/// Whether the option bytes are those that the board needs.
+/// Whether the option bytes are right for the board.
 pub fn option_bytes_are_right() -> bool {
     stm32g4::option_bytes_are_right(FLASH.optr().read().0)
 }

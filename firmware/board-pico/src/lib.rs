@@ -1,6 +1,6 @@
 //! The firmware on a Raspberry Pi Pico 2 (RP2350) or Pico (RP2040): registers and wiring. `docs/board/hardware.md`
 //! lists the pins and the parts. Numbers and headings after "RP2040" and "RP2350" refer to the data sheets of the two
-//! chips; where only one is cited, the other says the same.
+//! chips; where only one is cited, the other agrees.
 //!
 //! The Pico 2 is the board. The RP2040 has no floating-point unit, so the Pico reaches a fifth of the tick rate. It is
 //! supported because an emulator runs its image in this repository's CI. One source serves both. The differences are in

@@ -7,7 +7,7 @@ use crate::cost::Cost;
 // A tick that looks at layers and finds none.
 pub(crate) const EMPTY: Cost = Cost::new(991, 9936);
 
-// What a sine carrier adds.
+// Extra cost of a sine carrier.
 pub(crate) const SINE_CARRIER: Cost = Cost::new(32, 2643);
 
 // A curve, and each of its points.
@@ -17,7 +17,7 @@ pub(crate) const SPEED_POINT: Cost = Cost::new(8, 117);
 // The stream's own work, wherever the finger is.
 pub(crate) const STREAM_ELSEWHERE: Cost = Cost::new(94, 983);
 
-// What other regions add to a rectangle.
+// Extra cost of regions other than a rectangle.
 pub(crate) const ELLIPSE: Cost = Cost::new(8, 1138);
 
 // A polygon, each of its edges, and what each of those adds that are level with the finger.

@@ -66,7 +66,7 @@ fn a_monitor_that_is_disturbed_now_and_then_does_not_stop_the_output() {
     let Some(image) = emulator::pico_image() else { return };
     let bench = Bench::new(&image);
     let mut host = bench.play(CONSTANT);
-    // A number of ticks that is no multiple of those of a half period: each of them is hit.
+    // A number of ticks that is not a multiple of a half period's: each tick of it is hit.
     for _ in 0..10 {
         bench.with(|rig| rig.broken.monitor_v = Some(0.0));
         bench.step();

@@ -40,7 +40,7 @@ pub enum Error {
     /// A recording would replace a file.
     #[error("{0} already exists, and recordings are not overwritten: {new}, or add --overwrite", new = another(.1))]
     Exists(PathBuf, &'static str),
-    /// A recording that was cut off has left its rows. The text says how to keep them.
+    /// A recording that was cut off has left its rows. The text is advice on how to keep them.
     #[error("{0} has the rows of a recording that was cut off: {1}, or record again with --overwrite")]
     CutOff(PathBuf, &'static str),
     /// A file that no recording has left is where the rows would be.

@@ -9,7 +9,8 @@
 //! | a log that others read while it grows | [`OutputFile::create_live`] | under its own name, in whole rows |
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.
-//! - No output replaces a recording of a person, unless the user says so. Recordings are recognised by their content.
+//! - No output replaces a recording of a person, unless the user requests it. Recordings are recognised by their
+//! content.
 //! - A file gets its name when everything is on the disk, in one step: the earlier one stays until then.
 //! - Files that belong together are renamed together ([`commit_all`]); the last one may have the hashes of the others.
 //! - A folder has one writer at a time ([`OutputFolder`]).
@@ -39,7 +40,7 @@ pub use writer::{FileWriter, commit_all};
 use identity::{is_open_at, is_same_file};
 use writer::open_locked;
 
-/// The file whose lock says that a process writes into its folder.
+/// The file whose lock shows that a process writes into its folder.
 const LOCK: &str = ".frixel-lock";
 
 /// Converts an error of writing `path`, for use in `map_err`.

@@ -127,7 +127,7 @@ fn a_new_file_replaces_none_that_came_meanwhile() {
         fs::write(folder.path("rows"), "came meanwhile").unwrap();
         let error = writer.commit().unwrap_err().to_string();
         let kept = folder.text(if is_recording { "rows.partial" } else { ".rows.frixel-tmp" });
-        assert!(error.contains("the new one is whole, in "), "{error}");
+        assert!(error.contains("the complete new file is "), "{error}");
         assert_eq!(folder.text("rows").as_deref(), Some("came meanwhile"));
         assert_eq!(kept.as_deref(), Some("a,recording\n1,2\n"));
         assert!(!output.write_new(b"another").unwrap());
@@ -205,7 +205,7 @@ fn the_rows_of_a_recording_that_was_cut_off_stay_until_there_is_a_better_one() {
     let partial = || folder.text("rows.csv.partial");
     for (earlier, says) in [
         ("t_s,x_mm\n0,1\n", "has the rows of a recording that was cut off: keep them, or record again"),
-        ("A letter.", "is in the way, and no recording left it"),
+        ("A letter.", "is in the way, and is not from a recording that was cut off"),
     ] {
         fs::write(folder.path("rows.csv.partial"), earlier).unwrap();
         let error = recording(&path, false).begin_recording("keep them").unwrap_err().to_string();

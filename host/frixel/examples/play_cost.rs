@@ -97,7 +97,7 @@ mod stages {
             arguments.get(place).map_or_else(|| default.to_owned(), |given| given.to_string_lossy().into_owned())
         };
         let (scene, seconds) = (argument(0, SCENE), argument(1, SECONDS));
-        let seconds: f64 = seconds.parse().map_err(|_| format!("{seconds} is no number of seconds"))?;
+        let seconds: f64 = seconds.parse().map_err(|_| format!("{seconds} is not a number of seconds"))?;
         let case = Case::new(scene, seconds)?;
         let mut costs = Costs::unknown();
         for _ in 0..ROUNDS {

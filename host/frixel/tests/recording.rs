@@ -295,7 +295,7 @@ fn replay_names_the_first_difference_or_why_it_cannot_play() {
     let mut silent = recording.clone();
     silent.metadata.play = serde_json::Value::Null;
     write(folder, "silent.parquet", &silent);
-    assert!(refused(folder, "silent.parquet").contains("it does not say how it was played"));
+    assert!(refused(folder, "silent.parquet").contains("its metadata lacks the options of the play"));
 
     let mut without_stroke = recording.clone();
     without_stroke.metadata.play["stroke"]["name"] = "file".into();

@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let bundled = TouchConfig::bundled("100").ok_or("there is no such source")?;
     for (name, touch) in [("own", own), ("100", bundled)] {
-        println!("{name}: {:.1} mN rms from the scene", error_mn(touch)?);
+        println!("{name}: {:.1} mN rms error", error_mn(touch)?);
     }
     Ok(())
 }

@@ -118,7 +118,7 @@ pub struct Table<R> {
     cells: ByteRecord,
 }
 
-/// Refuses pictures, zips, and whole TOML files. What instruments write above a header may look like a field.
+/// Refuses pictures, zips, and whole TOML files. Lines of an instrument above a header may look like a field.
 fn refuse_other_kinds(head: &[u8], is_whole: bool) -> Result<(), TableError> {
     let is_toml = |text: &str| check_toml(text).is_ok() && toml::from_str::<toml::Table>(text).is_ok();
     let is_other = |kind: &FileKind| match kind {
@@ -415,7 +415,7 @@ impl<'t> Row<'t> {
     }
 }
 
-/// The error of a cell that is no number; `found` is empty if the cell is.
+/// The error of a cell that is not a number; `found` is empty if the cell is.
 pub(crate) fn not_a_number(row: u64, column: &str, found: &str) -> TableError {
     let found = if found.is_empty() { "an empty cell".to_owned() } else { format!("{found:?}") };
     TableError::new(

@@ -121,7 +121,7 @@ fn rows_without_contact_show_the_zero_of_the_sensor() {
     assert!(said.contains(note), "{said}");
     let said = right(fit_of(strokes(4, 24)));
     assert!(said.contains("a sensor that was not tared shifts the friction coefficient"), "{said}");
-    // A finger that rests with another load each time is no zero.
+    // A finger that rests with another load each time is not a zero.
     let resting = fit_of(untared(|stroke, _| [0.15 + 0.005 * stroke as f64, 0.06])).unwrap();
     assert_eq!(resting.data.preparation.sensor_zero, None);
 }
@@ -135,7 +135,7 @@ fn rows_that_were_copied_are_refused() {
         ..row
     });
     let said = fit_of(rows.iter().cloned().chain(copy).collect()).unwrap_err().to_string();
-    assert!(said.starts_with("rows 16802 to 33601 have the numbers of rows 2 to 16801: delete the copy"), "{said}");
+    assert!(said.starts_with("rows 16802 to 33601 repeat rows 2 to 16801: delete the copy"), "{said}");
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn a_row_without_a_time_is_left_out_and_many_are_refused() {
     let said = right(without(1000));
     assert!(said.contains("note: 41 rows without a time left out") && said.contains("zero was taken from"), "{said}");
     let said = without(9).unwrap_err().to_string();
-    assert!(said.starts_with("4447 of 40800 rows have no time, row 479 the first"), "{said}");
+    assert!(said.starts_with("4447 of 40800 rows have no time, the first of them row 479"), "{said}");
 }
 
 proptest! {

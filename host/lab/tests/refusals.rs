@@ -48,7 +48,7 @@ fn good_data_are_accepted_and_give_the_example_back() {
 fn a_force_that_no_finger_has_is_refused_by_its_row() {
     let mut rows = example();
     rows[700].friction_n = 200.0;
-    let hint = "200 N is no force of a finger";
+    let hint = "200 N is not a valid force of a finger";
     says(fit::fit(rows, &settings()), &["row 702, column friction_n", hint, "friction_mn"]);
 }
 
@@ -252,5 +252,5 @@ fn few_strokes_near_the_highest_voltage_are_refused_and_a_ramp_is_not() {
         strokes: 26,
         ..Protocol::default()
     };
-    says(fit_of(Person::example(1).record(&two)), &["2 of the strokes have 150 V rms", "at least 3"]);
+    says(fit_of(Person::example(1).record(&two)), &["2 of the strokes are at 150 V rms", "at least 3"]);
 }

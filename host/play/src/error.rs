@@ -14,7 +14,7 @@ pub enum PlayError {
     /// The contact model refuses the finger of the program.
     #[error("the contact model refuses the scene's finger: {0}")]
     Finger(#[from] ParameterError),
-    /// The board rejected a request, or stopped answering.
+    /// The board refused a request, or stopped answering.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The samples to stream could not be read or sent to their end.

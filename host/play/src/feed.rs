@@ -41,7 +41,7 @@ pub enum FeedError {
     /// The source of the samples has failed.
     #[error(transparent)]
     Source(SourceError),
-    /// The board rejected a request, or stopped answering.
+    /// The board refused a request, or stopped answering.
     #[error(transparent)]
     Device(#[from] DeviceError),
 }

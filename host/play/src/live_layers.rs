@@ -39,7 +39,7 @@ pub enum LiveError {
     TriggerNotFelt {
         /// The name or number that was given.
         layer: String,
-        /// Description of the layer that says how it is played.
+        /// Description of the layer, with the way it is played.
         what: &'static str,
     },
     /// The layer plays samples, and none are streamed.

@@ -54,7 +54,7 @@ pub enum SimulationError {
     /// The finger's stroke could not be built.
     #[error(transparent)]
     Stroke(#[from] StrokeError),
-    /// The board rejected the scene.
+    /// The board refused the scene.
     #[error("the board refused this scene: {0}")]
     Refused(#[source] DeviceError),
     /// The play failed.

@@ -10,12 +10,12 @@ use pyo3::types::PyList;
 /// The module that has the exceptions.
 const MODULE: &str = "frixel.errors";
 
-/// The exception for a rejected value.
+/// The exception for a refused value.
 pub(crate) fn parameter_error(py: Python<'_>, error: impl Display) -> PyErr {
     raised(py, "ParameterError", (error.to_string(),))
 }
 
-/// The exception for a rejected parameter of the contact model.
+/// The exception for a refused parameter of the contact model.
 pub(crate) fn model_error(error: ParameterError) -> PyErr {
     Python::attach(|py| parameter_error(py, error))
 }

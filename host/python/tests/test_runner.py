@@ -61,7 +61,7 @@ def test_answers_through_a_pipe_are_kept_and_a_session_that_was_cut_off_goes_on(
     # Who always says 1 is right in half of the trials.
     guessed = ran(folder, *ON_BOARD, answers="1\n" * 45)
     assert guessed.returncode == 1
-    assert "goes on after trial 2" in guessed.stdout
+    assert "resumes after trial 2" in guessed.stdout
     assert "trial 2:" not in guessed.stdout
     assert "no better than guessing" in guessed.stderr
     assert rows(folder)[:2] == kept

@@ -96,7 +96,7 @@ def test_another_finger_and_screen() -> None:
     assert dry.reach_n != scene.reach_n
     assert pickle.loads(pickle.dumps(dry)).reach_n == dry.reach_n
     assert scene.with_screen("example").screen_mm == (120.0, 80.0)
-    with pytest.raises(ParameterError, match="no bundled finger is called `dri`: did you mean `dry`"):
+    with pytest.raises(ParameterError, match="no bundled finger is named `dri`: did you mean `dry`"):
         scene.with_finger("dri")
     assert "dry" in Finger.bundled_names()
     assert TouchSource.bundled_names() == ["100", "200", "500"]

@@ -79,8 +79,8 @@ def test_a_score_is_data_that_can_be_sent_elsewhere() -> None:
         ({"stroke": 3}, 'a stroke is "human", "human-rough", "sweep" or a Stroke, found 3'),
         ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or share"),
         ({"people": 1000, "seconds": 600}, "are 2400000 s of strokes, and 36000 s fit into memory: give fewer or"),
-        ({"stroke": "sweep", "median_speed_mm_per_s": 50}, "a median speed is that of human strokes: leave it out"),
-        ({"touch": "50"}, "no bundled touch source is called `50`"),
+        ({"stroke": "sweep", "median_speed_mm_per_s": 50}, "only human strokes have a median speed: leave it out"),
+        ({"touch": "50"}, "no bundled touch source is named `50`"),
     ],
 )
 def test_what_is_not_taken_is_said(settings: dict[str, Any], sentence: str) -> None:

@@ -106,7 +106,7 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
             opened(tmp_path, **changed)
     values: list[tuple[dict[str, Any], str]] = [
         ({"seed": "7"}, "seed is a whole number from 0"),
-        ({"participant": "Jane Doe"}, r"give a code of 1 to 32 letters, digits, -, _ and \., and no name"),
+        ({"participant": "Jane Doe"}, r"use a code of 1 to 32 letters, digits, -, _ and \., not a name"),
         ({"participant": 7}, "participant 7: give a code"),
     ]
     for changed, said in values:
@@ -117,7 +117,7 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
 
 
 def test_a_session_has_one_writer(tmp_path: Path) -> None:
-    with opened(tmp_path), pytest.raises(ExperimentError, match="another process writes"):
+    with opened(tmp_path), pytest.raises(ExperimentError, match="another process is writing"):
         opened(tmp_path)
     session = opened(tmp_path)
     session.close()
@@ -348,7 +348,7 @@ def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device, seconds=0.1, seed=3)
         session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
-        with pytest.raises(ExperimentError, match="no trial runs to which this play could belong"):
+        with pytest.raises(ExperimentError, match="no trial is running that this play could belong to"):
             session.play(plates(0.1), stroke=STROKE)
         assert session.rows[0]["plays"] == []
         with pytest.raises(ExperimentError, match="played nothing through its session"):

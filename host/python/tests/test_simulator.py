@@ -135,7 +135,7 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
         (lambda: Stroke.straight((1,), (2, 3)), "from_mm is x and y in mm"),  # type: ignore[arg-type]
         (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
-        (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is called `50`"),
+        (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is named `50`"),
     ],
 )
 def test_what_is_not_taken_is_said(make: object, sentence: str) -> None:

@@ -136,7 +136,7 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
     def written() -> dict[str, bytes]:
         return {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
-    with pytest.raises(FrixelError, match="is of another study: give another folder, or `overwrite=True`"):
+    with pytest.raises(FrixelError, match="is from another study: give another folder, or `overwrite=True`"):
         two.write(tmp_path)
     assert written() == one.files
     # One of the files cannot be written.
@@ -195,7 +195,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
     with pytest.raises(ParameterError, match=r"expected a result made by `sweep\.play`"):
         sweep.Study(["{}"])
     (cell,) = sweep.cells({"scenes": {"grating": Scene.parse(GRATING)}, "people": 1})
-    with pytest.raises(ParameterError, match=r"this cell is of frixel 0\.0\.9"):
+    with pytest.raises(ParameterError, match=r"this cell is from frixel 0\.0\.9"):
         sweep.play(cell.replace('"version":"0.1.0"', '"version":"0.0.9"'))
     values = {"layer.1.high_n": [40]}
     with pytest.raises(SceneError, match=r"^<plan>:\d+:1: grating with layer\.1\.high_n = 40: grating:\d+:\d+: "):

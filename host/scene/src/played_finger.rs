@@ -14,7 +14,7 @@ pub struct PlayedFinger {
 }
 
 impl PlayedFinger {
-    /// The finger of a scene. A profile measured on another screen counts as assumed, and the note says so.
+    /// The finger of a scene. A profile measured on another screen counts as assumed, with a note.
     pub(super) fn of(profiles: &Profiles) -> (Self, Option<String>) {
         let title = match &profiles.finger_source {
             ProfileSource::Option(name) | ProfileSource::Named(name) => format!("finger \"{name}\""),

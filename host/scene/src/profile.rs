@@ -40,11 +40,11 @@ pub struct NamedProfile {
     pub text: Option<String>,
 }
 
-/// Why a name or a file is no profile.
+/// Why a name or a file is not a profile.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ProfileError {
     /// None is bundled under this name.
-    #[error("no bundled {kind} is called `{}`: {}", brief(.name), advice(.nearest))]
+    #[error("no bundled {kind} is named `{}`: {}", brief(.name), advice(.nearest))]
     NotBundled {
         /// Its kind in messages.
         kind: &'static str,

@@ -2,7 +2,7 @@
 //!
 //! The page calls [`input`] for a buffer of a length, fills it, and calls an export. Afterwards [`output`] and
 //! [`output_len`] say where the answer is. An export returns 0, or 1 when the answer is a JSON text with `error`.
-//! Unless its documentation says otherwise, an export's input is a [`Request`] and its answer JSON.
+//! Unless documented otherwise, an export's input is a [`Request`] and its answer JSON.
 //!
 //! The functions are also callable natively; only their names are for the page.
 #![allow(unsafe_code, reason = "an export needs a name that the linker keeps; nothing else in this file is unsafe")]
@@ -89,14 +89,14 @@ pub extern "C" fn compile() -> i32 {
     respond(|| Ok(crate::compile(&request()?)))
 }
 
-/// The friction map; the answer is numbers, as `map.rs` says.
+/// The friction map; the answer is numbers, see `map.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn map() -> i32 {
     respond_bytes(|| crate::map::map(&request()?))
 }
 
-/// The names of the numbers in answers that are no JSON, in their order: `mapHead`, `frameHead` and `frameColumns`; and
-/// `tickHz`, the simulated board's ticks a second.
+/// The names of the numbers in answers that are not JSON, in their order: `mapHead`, `frameHead` and `frameColumns`;
+/// and `tickHz`, the simulated board's ticks a second.
 #[unsafe(no_mangle)]
 pub extern "C" fn layouts() -> i32 {
     respond(|| {
@@ -134,19 +134,19 @@ pub extern "C" fn picture() -> i32 {
     })
 }
 
-/// The values of the input, which is a text of TOML, and the lines of its layers: `layer_text.rs` says how.
+/// The values of the input, which is TOML text, and the lines of its layers: see `layer_text.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn read_text() -> i32 {
     respond_bytes(|| Ok(layer_text::read(&line())?.into_bytes()))
 }
 
-/// Edits a text, as `layer_text.rs` says; the answer is the new text.
+/// Edits a text (see `layer_text.rs`); the answer is the new text.
 #[unsafe(no_mangle)]
 pub extern "C" fn edit_text() -> i32 {
     respond_bytes(|| Ok(layer_text::edit(&line())?.into_bytes()))
 }
 
-/// The layers that Add and New offer: `additions.rs` says how.
+/// The layers that Add and New offer: see `additions.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn additions() -> i32 {
     respond(|| Ok(additions::list()?))
@@ -158,13 +158,13 @@ pub extern "C" fn first_values() -> i32 {
     respond(|| Ok(additions::first_values()))
 }
 
-/// The place of a layer, and the changes that move or resize it: `place.rs` says how.
+/// The place of a layer, and the changes that move or resize it: see `place.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn place() -> i32 {
     respond(|| Ok(place::place(&line())?))
 }
 
-/// Adds a layer to a text, as `additions.rs` says.
+/// Adds a layer to a text: see `additions.rs`.
 #[unsafe(no_mangle)]
 pub extern "C" fn add_layer() -> i32 {
     respond(|| Ok(additions::add(&line())?))

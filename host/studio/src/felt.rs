@@ -48,7 +48,7 @@ pub(crate) struct FeltSamples {
     /// Tick of the first sample's first tick.
     pub(crate) first_tick: u64,
     /// As [`COLUMNS`] names them; places, speed and contact are not-a-number while the finger is up, and so is the
-    /// contact of a finger whose friction was measured, of which no model says it.
+    /// contact of a finger with an empirical law, which does not give it.
     pub(crate) columns: [Vec<f32>; COLUMNS.len()],
     /// The change of the felt friction at every tick, N.
     pub(crate) sound_n: Vec<f32>,

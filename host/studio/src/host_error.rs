@@ -34,7 +34,7 @@ pub enum HostError {
     /// A text cannot be read or edited.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// A file is no picture that can be played.
+    /// A file is not a picture that can be played.
     #[error("{0}")]
     Picture(String),
     /// There is no board.

@@ -1,7 +1,7 @@
 //! The text of a scene as the map edits it: values that are read, and layers that change while all else stays as it is
 //! written, byte by byte.
 //!
-//! The reader of TOML is the compiler's, which says where each value stands. `toml_edit` would be a second one in the
+//! The reader of TOML is the compiler's, which gives the place of each value. `toml_edit` would be a second one in the
 //! module (48 KB gzipped, more than `<frixel-scene>` has room for), and moves dotted keys that stand apart.
 
 mod json;

@@ -7,7 +7,7 @@ use frixel_scene::{LayerSetting, LayerTable, Program, Scene};
 use serde_json::{Value, json};
 
 /// The layers of a scene, called `entry`, that was compiled to `program`, as they are written in its files: with
-/// `repeat`, one is several layers of the scene. `Layer` in `web/engine/types.d.ts` says what each has.
+/// `repeat`, one is several layers of the scene. `Layer` in `web/engine/types.d.ts` lists the fields of each.
 pub(crate) fn layers(scene: &Scene, entry: &str, program: &Program, judgement: &Judgement) -> Vec<Value> {
     let describe = |table: LayerTable| {
         let LayerTable { number, name, kind, gain, starts_on, layers, file, lines, bounds_mm } = table;

@@ -1,8 +1,8 @@
 //! The engine of the studio, frixel's page: compiler, driver and simulator as one WebAssembly module.
 //!
-//! The module's exports take and return plain numbers. Larger values cross in two buffers, one for each direction
-//! ([`exports`] says how). No glue code is generated: `web/engine` has the JavaScript files that use the exports,
-//! and `web/engine/README.md` says what a page can do with them.
+//! The module's exports take and return plain numbers. Larger values cross in two buffers, one for each direction (see
+//! [`exports`]). No glue code is generated: `web/engine` has the JavaScript files that use the exports, and
+//! `web/engine/README.md` describes their use in a page.
 //!
 //! A page loads the module several times, and each instance does one of these things:
 //!

@@ -23,7 +23,7 @@ pub struct Request {
     pub screen: Option<String>,
     /// The simulated touch source: the name of a bundled one or the text of one; `None` for 100 reports a second.
     pub touch: Option<String>,
-    /// Whether the simulator in the page plays the scene without prediction, whatever the scene says.
+    /// Whether the simulator in the page plays the scene without prediction, regardless of the scene.
     #[serde(default)]
     pub without_prediction: bool,
     /// Numbers of the request.

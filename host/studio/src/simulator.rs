@@ -242,8 +242,8 @@ mod tests {
         sums_mm.map(|sum_mm| sum_mm / count)
     }
 
-    /// Where the page says that the firmware predicts the finger is where the firmware has it; without prediction, the
-    /// firmware has it where it was reported, but for the noise that its filter takes away.
+    /// The page shows the predicted finger where the firmware has it; without prediction, the firmware has it where it
+    /// was reported, but for the noise that its filter takes away.
     #[test]
     fn the_board_has_the_finger_where_it_is_predicted_or_where_it_was_reported() {
         let [from_finger_mm, from_prediction_mm, from_report_mm] = distances_mm(false);

@@ -41,7 +41,7 @@ const M0_PLUS: Measured = Measured { tick: "m0plus.tick_", quantity: "", percent
 
 /// Core cycles, as in the file.
 struct Costs {
-    /// Name, description and core cycles of what is no layer of its own.
+    /// Name, description and core cycles of everything that is not a layer.
     parts: Vec<(&'static str, &'static str, u64)>,
     /// Name and core cycles of a layer, or of the part of it that another does not have.
     layers: Vec<(String, u64)>,
@@ -120,11 +120,11 @@ fn costs(figures: &Figures, core: &Measured) -> Result<Costs, String> {
     let polygon = polygon.saturating_sub(constant + POLYGON_EDGES_LEVEL * polygon_edge_level);
     let parts = vec![
         ("EMPTY", "A tick that looks at layers and finds none.", empty),
-        ("SINE_CARRIER", "What a sine carrier adds.", tick("two_constants_sine_carrier")?.saturating_sub(two)),
+        ("SINE_CARRIER", "Extra cost of a sine carrier.", tick("two_constants_sine_carrier")?.saturating_sub(two)),
         ("SPEED", "A curve, and each of its points.", speed),
         ("SPEED_POINT", "", speed_point),
         ("STREAM_ELSEWHERE", "The stream's own work, wherever the finger is.", stream_elsewhere),
-        ("ELLIPSE", "What other regions add to a rectangle.", alone("ellipse")?.saturating_sub(constant)),
+        ("ELLIPSE", "Extra cost of regions other than a rectangle.", alone("ellipse")?.saturating_sub(constant)),
         (
             "POLYGON",
             "A polygon, each of its edges, and what each of those adds that are level with the finger.",

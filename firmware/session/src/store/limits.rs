@@ -55,7 +55,7 @@ pub enum CeilingPolicy {
 }
 
 impl CeilingPolicy {
-    /// Version of the layout, which differs so that a build rejects limits stored by a build of the other kind.
+    /// Version of the layout, which differs so that a build refuses limits stored by a build of the other kind.
     const fn version(self) -> u32 {
         match self {
             Self::InForce => 1,

@@ -267,7 +267,7 @@ impl fmt::Display for ConfigRefusal {
             Self::WHOLE_SCENE => f.write_str("the scene")?,
             layer => write!(f, "layer {layer} (the first is 0)")?,
         }
-        write!(f, " is {found:?}{unit}, which the board cannot play: it takes ")?;
+        write!(f, " is {found:?}{unit}, which the board cannot play: expected ")?;
         match (min.is_finite(), max.is_finite()) {
             (true, true) => write!(f, "{min:?} to {max:?}{unit}"),
             (true, false) => write!(f, "{min:?}{unit} or more"),

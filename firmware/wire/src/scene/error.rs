@@ -108,7 +108,7 @@ impl fmt::Display for SceneError {
                 )
             }
             Self::TooManyRecords { found } => {
-                write!(f, "the scene has {found} layers, more than the board takes ({RECORDS_MAX} at most): use fewer")
+                write!(f, "the scene has {found} layers, more than the {RECORDS_MAX} that the board accepts: use fewer")
             }
             Self::TooManyPoints { found } => {
                 write!(

@@ -20,7 +20,7 @@ pub(super) enum ModelCommand {
     /// `wf-loaded`, `wf-finite`, `soft-upper`, `soft-lower`, `soft-loaded`. Every row needs `radius_m`, `coating_m`,
     /// `permittivity`, `friction_coefficient` and `voltage_v` (rms). Fingers on springs (wf) need `stiffness_pa_per_m`;
     /// soft ones `modulus_pa`, `stress_exponent`, `shape_constant`; the loaded ones `normal_force_n`, which `wf-lower`
-    /// and `wf-finite` take as well; `wf-finite` needs `outer_radius_m`. What a variant does not need is not read.
+    /// and `wf-finite` take as well; `wf-finite` needs `outer_radius_m`. Other columns are not read.
     ///
     /// Writes the same columns, and behind them `sigma0_pa`, `contact_radius_m`, `effective_stiffness_pa_per_m`,
     /// `friction_n` and `status`: `ok`, `no-contact` (pulled off: radius and friction are zero), `wider-than-finger`
@@ -45,7 +45,7 @@ pub(super) struct FileArgs {
     /// CSV file to write; without it, standard output.
     #[arg(long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-    /// What to compute in, from the cells' digits to the answer's.
+    /// Floating-point type of the computation, from the cells' digits to the answer's.
     #[arg(long, value_enum, default_value_t = PrecisionName::F64)]
     precision: PrecisionName,
 }
@@ -100,7 +100,7 @@ fn open(path: Option<&Path>) -> Result<Box<dyn Read>> {
     }
 }
 
-/// Notes what the contact cannot mean. Fails if a row has no answer.
+/// Notes contacts that are wider than the finger. Fails if a row has no answer.
 fn judge(summary: &Summary) -> Result<()> {
     let rows = |count: u64| if count == 1 { "1 row has".to_owned() } else { format!("{count} rows have") };
     if let Some(doubt) = model_csv::wider_than_finger(summary.beyond_finger_rows) {

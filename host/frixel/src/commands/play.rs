@@ -78,7 +78,7 @@ pub(super) struct PlayArgs {
     /// Simulated skin: `no-leakage`; `mean-square`, whose friction follows the rms voltage.
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', hide_possible_values = true, help_heading = RARE)]
     skin: Vec<Skin>,
-    /// Seed of a simulated person, for whom the scene was not made.
+    /// Seed of a simulated person, other than the finger of the scene.
     #[arg(long, value_name = "N", value_parser = argument::seed, allow_negative_numbers = true, help_heading = RARE)]
     finger_seed: Option<u64>,
     /// Also record the play and its inputs, for `frixel replay` (docs/design/outputs.md).

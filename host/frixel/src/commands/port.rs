@@ -22,7 +22,7 @@ pub(super) fn open(port: &str, boards: &[&str]) -> Result<SerialLink> {
     })
 }
 
-/// Connects to the board at a serial port, to play on it. Prints the board's notices, and rejects a board with an
+/// Connects to the board at a serial port, to play on it. Prints the board's notices, and refuses a board with an
 /// electrode unless `arm` is set. `boards` are the names that the command also accepts.
 pub(super) fn connect_to_play(port: &str, boards: &[&str], arm: bool) -> Result<Device<PortLink>> {
     let link = Observed::new(open(port, boards)?, Recorder::default(), |recorder, message| {

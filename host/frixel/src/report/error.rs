@@ -36,7 +36,7 @@ pub(crate) enum ReportError {
     /// The stroke of a constant could not be made.
     #[error("a constant: {0}")]
     Stroke(#[from] StrokeError),
-    /// The model rejected a parameter.
+    /// The model refused a parameter.
     #[error("the contact model: {0}")]
     Parameter(#[from] ParameterError),
 }

@@ -74,7 +74,7 @@ fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
     let folder = tempfile::tempdir().unwrap();
     for (wrong, typed, says) in [
         (Defect::ReadyHigh, "", "unplug the amplifier"),
-        (Defect::NoSyncWire, "unplugged\n", "the wire of SYNC is missing"),
+        (Defect::NoSyncWire, "unplugged\n", "SYNC is not wired"),
         (Defect::LatchLate, "unplugged\n", "2 of the measurements"),
     ] {
         let report = folder.path().join(format!("{wrong:?}.json")).display().to_string();

@@ -29,7 +29,7 @@ pub struct BoardRow {
 }
 
 /// Joins the board's rows with the forces of a sensor whose clock began at another time, and numbers the strokes. If
-/// the finger is simulated, each row says so.
+/// the finger is simulated, each row is marked.
 ///
 /// Fails if friction does not follow the drive, or if the two clocks drift apart by more than 1 ms.
 pub fn align(board: &[BoardRow], forces: &[ForceRow], is_simulated: bool) -> Result<Vec<Row>, CalibrationError> {

@@ -1,8 +1,8 @@
 //! Records the data that [`fit`](crate::fit) needs: a board switches its drive on and off while a finger slides, and a
 //! force sensor records.
 //!
-//! [`Protocol`] says what is driven when, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes
-//! the recording. [`ForceSensor`] is the sensor under a simulated screen.
+//! [`Protocol`] is the drive over time, [`align`] puts the sensor's clock on the board's, and [`write_csv`] writes the
+//! recording. [`ForceSensor`] is the sensor under a simulated screen.
 
 mod align;
 mod force_sensor;

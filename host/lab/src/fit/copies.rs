@@ -5,8 +5,8 @@ use super::table::Row;
 /// Threshold for a copy: the succession of its rows is as improbable as eight rows that occur nowhere else.
 const SUCCESSIONS: f64 = 7.0;
 
-/// The numbers of the first and the last row of consecutive rows that return later, whatever their time and stroke, and
-/// of what was copied; `None` if there are none, or chance explains them.
+/// The first and last row number of a run of rows that repeats an earlier run, regardless of time and stroke, and those
+/// of the earlier run; `None` if there is none, or chance explains it.
 pub(super) fn find(rows: &[Row]) -> Option<[[u64; 2]; 2]> {
     // A sensor that is read faster than it measures repeats its rows.
     let runs: Vec<&[Row]> = rows.chunk_by(|one, next| measured(one) == measured(next)).collect();
@@ -92,7 +92,7 @@ fn information(singles: &Windows, pairs: &Windows) -> Vec<f64> {
     (0..count).map(up_to).collect()
 }
 
-/// The numbers of the rows around `row` that are those around `of`, with all that are equal.
+/// The numbers of the equal rows around `row` and around `of`: first and last of each.
 fn copied(rows: &[Row], row: usize, of: usize) -> [[u64; 2]; 2] {
     let is_equal = |(one, other): &(&Row, &Row)| measured(one) == measured(other);
     let (before, behind) = (rows.split_at(row.min(rows.len())), rows.split_at(of.min(rows.len())));
@@ -111,7 +111,7 @@ mod tests {
 
     use super::{Row, find};
 
-    /// What is added to the numbers of rows that are copied.
+    /// Added to the numbers of copied rows.
     const LATER: u64 = 1_000_000;
 
     /// Appends a copy of rows.

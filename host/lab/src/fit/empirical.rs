@@ -63,9 +63,9 @@ pub enum VoltageLaw {
     },
 }
 
-/// Fits a power law of the voltage to a recording or to means, whatever the contact model says about them; where the
-/// strokes of a recording follow none, the law is that of their means at each voltage. Fails if electric friction does
-/// not rise with the voltage as a profile can have it, and with [`FitError::Interrupted`] when `goes_on` breaks.
+/// Fits a power law of the voltage to a recording or to means, regardless of the contact model; where the strokes of a
+/// recording follow none, the law is that of their means at each voltage. Fails if electric friction does not rise with
+/// the voltage as a profile can have it, and with [`FitError::Interrupted`] when `goes_on` breaks.
 pub fn fit_empirical(data: Data, settings: &Settings, goes_on: GoesOn<'_>) -> Result<EmpiricalFit, FitError> {
     let fitted = FittedData::of(data, settings, goes_on)?;
     let friction_coefficient = fitted.friction_coefficient(|replicate| &replicate.power)?;

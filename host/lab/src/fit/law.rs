@@ -54,8 +54,8 @@ impl Coupling {
 pub(super) enum Attraction {
     /// Eqs. (43), (21) of the contact model, as the mean under a carrier with this ripple.
     Contact(Coupling, Ripple),
-    /// `attraction = reference_n (V/150 V)^voltage_exponent (F_N/reference_load_n)^load_exponent`: what the model is
-    /// tested against.
+    /// `attraction = reference_n (V/150 V)^voltage_exponent (F_N/reference_load_n)^load_exponent`: the alternative that
+    /// the model is tested against.
     Power { reference_n: f64, voltage_exponent: f64, load_exponent: f64, reference_load_n: f64 },
 }
 

@@ -1,11 +1,11 @@
 //! Means with their errors, as papers print them: data for a fit.
 //!
 //! A row is the mean friction at one voltage and load, with its standard error, or with the standard deviation and the
-//! number of what was averaged. The rows are fitted as the means of strokes are, weighted by their errors. Intervals
-//! come from drawing each mean anew from its error (a parametric bootstrap), as if the means were independent: what
-//! strokes or people have in common cannot be told from means. An error that is known from `n` values is drawn from
-//! Student's distribution with `n - 1` degrees of freedom, row by row: one number for the whole table would be too many
-//! where few rows carry the estimate.
+//! number of averaged values. The rows are fitted as the means of strokes are, weighted by their errors. Intervals come
+//! from redrawing each mean from its error (a parametric bootstrap), as if the means were independent: means do not
+//! show what strokes or people have in common. An error that is known from `n` values is drawn from Student's
+//! distribution with `n - 1` degrees of freedom, row by row: one number for the whole table would be too many where few
+//! rows carry the estimate.
 
 use core::f64::consts::TAU;
 use std::io::Read;
@@ -213,8 +213,8 @@ fn stroke(row: &MeanRow, observation: Observation) -> StrokeMeans {
     }
 }
 
-/// Fails if the means lie further from the closest power law than their errors explain, in 1 of 1,000 tables. What the
-/// contact model says is judged apart.
+/// Fails if the means lie further from the closest power law than their errors explain, in 1 of 1,000 tables. The
+/// verdict on the contact model is separate.
 fn check_scatter(observations: &[Observation], freedoms: &[Option<f64>], fitted: &Fitted) -> Result<(), FitError> {
     let residuals = residuals_n(&fitted.best.power, 1.0, observations).ok_or(FitError::NotConverged)?;
     let errors = residuals.iter().zip(observations).map(|(residual_n, one)| residual_n * one.weight);

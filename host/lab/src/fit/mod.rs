@@ -12,7 +12,7 @@
 //! `verdict` after it). A finger that contradicts the model has a law of its own instead (`empirical`): a power of the
 //! voltage, or else points (`measured_points`).
 //!
-//! # What is estimated
+//! # Estimates
 //!
 //! - **Friction coefficient**: friction over normal load with the drive off, the mean over the strokes of the
 //!   recording.

@@ -79,7 +79,7 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Divides rows into strokes, leaves out those that are named in `without` and those with defects, and drops starts
+    /// Divides rows into strokes, leaves out the ones named in `without` and the ones with defects, and drops starts
     /// and turns.
     pub(super) fn new(rows: Vec<Row>, without: &[String], defects: &mut Defects) -> Result<Self, FitError> {
         let has_time = rows.iter().all(|row| row.time_s.is_some());
@@ -155,7 +155,7 @@ fn divided(rows: Vec<Row>, has_time: bool) -> Result<(Division, Vec<Stroke>), Fi
     Ok((Division::Blocks, blocks.collect()))
 }
 
-/// Divides a stroke of the column where the finger turns. Fails without times: rows around a turn are no steady
+/// Divides a stroke of the column where the finger turns. Fails without times: rows around a turn are not steady
 /// sliding.
 fn turned(stroke: Stroke, has_time: bool) -> Result<Vec<Stroke>, FitError> {
     let name = stroke.name;
@@ -319,7 +319,7 @@ mod tests {
             prop_assert_eq!(strokes(named(&rows, |index| (piece_of[index] / group).to_string())), divided);
         }
 
-        /// What an untared sensor adds is subtracted again.
+        /// The offset of an untared sensor is subtracted again.
         #[test]
         fn a_constant_of_the_sensor_changes_no_row_in_contact(
             load_n in -0.4_f64..2.0,

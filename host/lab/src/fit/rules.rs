@@ -220,7 +220,8 @@ pub(super) fn check_forces(recording: &Recording) -> Result<(), FitError> {
 }
 
 /// Whether the drive acted in every stroke, as it does on a finger that slips: the strokes whose attraction is far
-/// below that of others at the same voltage did not. A whole voltage below the fit says that the law is another one.
+/// below that of others at the same voltage did not. A whole voltage below the fit shows that the law is a different
+/// one.
 pub(super) fn check_slip(strokes: &[StrokeMeans], fitted: &Solution, defects: &mut Defects) {
     let mut ratios: Vec<(&StrokeMeans, f64)> = strokes
         .iter()

@@ -111,7 +111,7 @@ pub(super) fn check_settled(phases: &Phases, used: &[StrokeMeans]) -> Result<f64
 }
 
 /// Fails if the intervals of [`check_settled`] are too wide to show anything. This check follows that of the estimates'
-/// intervals, which the same noise widens, and whose message says more.
+/// intervals, which the same noise widens, and whose message has more detail.
 pub(super) fn check_settling_error(error: f64) -> Result<(), FitError> {
     if error <= SETTLING_ERROR_MAX {
         return Ok(());

@@ -34,7 +34,7 @@ struct Summary<'f> {
     voltage_exponent_interval: Option<[f64; 2]>,
     /// The model's exponent for these data.
     voltage_exponent_of_model: Option<f64>,
-    /// `kept`, `doubted` or `none`: what the exponent of the voltage says about the model.
+    /// Verdict of the exponent of the voltage on the model: `kept`, `doubted` or `none`.
     voltage_verdict: Verdict,
     /// Exponent of the load; `null` if the loads are too similar.
     load_exponent: Option<f64>,
@@ -42,7 +42,7 @@ struct Summary<'f> {
     load_exponent_interval: Option<[f64; 2]>,
     /// The model's exponent for these data.
     load_exponent_of_model: Option<f64>,
-    /// `kept`, `doubted` or `none`: what the exponent of the load says about the model.
+    /// Verdict of the exponent of the load on the model: `kept`, `doubted` or `none`.
     load_verdict: Verdict,
     /// Voltage at which electric friction is stated, V rms.
     stated_voltage_v_rms: f64,
@@ -240,12 +240,12 @@ fn notes(fit: &Fit) -> Vec<&'static str> {
         notes
             .push("means do not show whether fingers slid steadily, nor whether they changed while they were measured");
         if fit.data.load_range_n.0 >= fit.data.load_range_n.1 {
-            notes.push("all loads are equal, so the means say nothing about other loads");
+            notes.push("all loads are equal, so the means do not cover other loads");
         }
         return notes;
     }
     if fit.data.division == Division::Motion {
-        notes.push("without a column stroke, strokes were divided where the direction, the speed or the clock says so");
+        notes.push("without a column stroke, strokes were divided by direction, speed and clock");
     }
     if fit.data.division == Division::Blocks {
         notes.push(

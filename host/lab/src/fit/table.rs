@@ -73,7 +73,7 @@ pub fn rows(input: impl Read) -> Result<Reading<Vec<Row>>, FitError> {
     recording(Table::new(input)?)
 }
 
-/// Whether a row says, in its column [`ORIGIN`], that the finger is simulated.
+/// Whether the column [`ORIGIN`] of a row marks a simulated finger.
 pub(crate) fn is_simulated(row: &TableRow<'_>, origin: Option<Place>) -> bool {
     origin.and_then(|origin| row.known(origin)).is_some_and(|word| word == Origin::Assumed.word())
 }

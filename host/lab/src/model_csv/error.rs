@@ -1,4 +1,4 @@
-//! Why a CSV file, or a row of it, is rejected.
+//! Why a CSV file, or a row of it, is refused.
 
 use std::io;
 
@@ -8,10 +8,10 @@ use thiserror::Error;
 use super::columns::{COATING, NORMAL_FORCE, PERMITTIVITY, VOLTAGE};
 use crate::table::TableError;
 
-/// Why a CSV file is rejected as a whole.
+/// Why a CSV file is refused as a whole.
 #[derive(Debug, Error)]
 pub enum CsvError {
-    /// The input is no table, or its header lacks a column that every row needs.
+    /// The input is not a table, or its header lacks a column that every row needs.
     #[error(transparent)]
     Table(#[from] TableError),
     /// Writing the output failed.

@@ -32,9 +32,9 @@
 //! `wider-than-finger` if its radius exceeds the finger's radius of curvature, where the model is not valid. Its cells
 //! are empty if it passes the outer radius.
 //!
-//! An invalid row does not stop the others. The file as a whole is rejected ([`CsvError`]) when its header lacks a
-//! column that every row needs, or repeats a column that the model reads. A missing column that only some variants
-//! need makes the rows of those variants invalid.
+//! An invalid row does not stop the others. The file as a whole is refused ([`CsvError`]) when its header lacks a
+//! column that every row needs, or repeats a column that the model reads. A missing column that only some variants need
+//! makes the rows of those variants invalid.
 
 mod columns;
 mod error;

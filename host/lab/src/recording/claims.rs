@@ -215,7 +215,7 @@ mod tests {
 
     fn list(elements: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = vec![0xf0 | STRUCT];
-        // The length of a list is no signed number.
+        // The length of a list is not a signed number.
         let mut left = elements.len();
         while left >= 0x80 {
             bytes.push(left as u8 | 0x80);
@@ -226,7 +226,7 @@ mod tests {
         bytes
     }
 
-    /// A page of this kind that says that it has these sizes and values, and has no bytes.
+    /// A page of this kind that claims these sizes and values, and has no bytes.
     fn page(kind: i64, unpacked: i64, packed: i64, values: i64) -> Vec<u8> {
         let of_kind = [count(1, values), vec![0]].concat();
         let delta = if kind == 2 { 4 } else { 2 };
@@ -275,7 +275,7 @@ mod tests {
         [count(1, 1), field(1, LIST, &schema), field(2, LIST, &groups), vec![0]].concat()
     }
 
-    /// What is written can be read.
+    /// Written recordings can be read.
     #[test]
     fn a_recording_is_as_long_as_is_read() {
         for (columns, max) in [(1, 10_000_000), (6, 10_000_000), (12, 5_592_405), (64, 1_048_576)] {

@@ -41,7 +41,7 @@ impl Recording {
     }
 }
 
-/// A table that is no recording, such as the results of a study, as a Parquet file: units and meanings are in the
+/// A table that is not a recording, such as the results of a study, as a Parquet file: units and meanings are in the
 /// metadata of its fields.
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingError> {
@@ -57,8 +57,8 @@ pub(crate) fn table_parquet(columns: &[Column]) -> Result<Vec<u8>, RecordingErro
 
 /// Writes a recording as Parquet, row group by row group.
 ///
-/// After each [`Self::end`], what was written is a whole Parquet file. More row groups may follow: a footer that others
-/// follow is skipped by readers. So a file that grows is lost only from the last `end` on.
+/// After each [`Self::end`], the file is a complete Parquet file. More row groups may follow, since readers skip all
+/// footers but the last. A growing file is thus lost only from the last `end` on.
 pub struct ParquetWriter<W: Write + Send> {
     writer: SerializedFileWriter<Hashed<W>>,
     fields: Vec<Field>,
@@ -80,7 +80,7 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     /// Writes a row group: the values of each column, in the order of the fields, of equal numbers. Fails if the file
-    /// would become too long to be read back; what was written so far can be read.
+    /// would become too long to be read back; the rows so far can be read.
     pub fn write(&mut self, columns: &[Values]) -> Result<(), RecordingError> {
         let rows = columns.first().map_or(0, Values::len) as i64;
         check_length((self.rows + rows).unsigned_abs(), self.fields.len())?;
@@ -131,8 +131,8 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 }
 
-/// The metadata as pairs of keys and values: those that readers of Parquet see, and the same in the Arrow schema, where
-/// pyarrow and pandas look for them. The hash is last.
+/// The metadata as pairs of keys and values: for readers of Parquet, and again in the Arrow schema, where pyarrow and
+/// pandas look for them. The hash is last.
 fn pairs(metadata: &Metadata, fields: &[Field]) -> Result<Vec<KeyValue>, RecordingError> {
     let mut pairs = vec![
         (KEY_FORMAT, FORMAT.to_string()),

@@ -84,7 +84,7 @@ fn options(metadata: &Metadata) -> Result<PlayOptions, ReplayError> {
         return Err(refused(format!("frixel {found} recorded it, and this is {own}: use that version")));
     }
     match serde_json::from_value::<PlayOptions>(play.clone()) {
-        Err(_) => Err(refused("it does not say how it was played")),
+        Err(_) => Err(refused("its metadata lacks the options of the play")),
         Ok(PlayOptions { control: true, lines: None, .. }) => {
             Err(refused("lines on standard input changed it (--control), which the recording does not have"))
         }

@@ -25,7 +25,7 @@ impl<W> Hashed<W> {
         Self { to, hash: Sha256::new() }
     }
 
-    /// Writes the hash into a footer that follows what was written.
+    /// Writes the hash into the footer that follows the bytes so far.
     pub(super) fn seal(&self, footer: &mut [u8]) {
         let digits = hex(&self.hash.clone().chain_update(&*footer).finalize());
         if let Some(place) = place(footer).and_then(|at| footer.get_mut(at..at + UNKNOWN.len())) {

@@ -280,7 +280,7 @@ impl Check {
         }
     }
 
-    /// What is expected, in words.
+    /// The expectation, in words.
     fn expected(&self) -> String {
         match &self.expectation.condition {
             Condition::OutputZero => "an output of zero".to_owned(),

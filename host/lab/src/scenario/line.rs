@@ -42,7 +42,7 @@ struct Inner<'r> {
     is_dead: bool,
     checks: Checks,
     states: StateHistory,
-    /// What happened, with its tick on the rig's clock.
+    /// Events, with their ticks on the rig's clock.
     timeline: Vec<(u64, String)>,
     /// Why the rig has ended, with the line of the fault that it could not cause.
     error: Option<(Option<usize>, RigError)>,

@@ -30,7 +30,7 @@ use line::ScenarioLine;
 /// Results of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioOutcome {
-    /// What happened, in the order of time.
+    /// Events, in the order of time.
     pub timeline: Vec<TimelineEntry>,
     /// Number of expectations.
     pub expectations: usize,
@@ -38,12 +38,12 @@ pub struct ScenarioOutcome {
     pub unmet: Vec<Unmet>,
 }
 
-/// Something that happened.
+/// An event of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimelineEntry {
     /// Time since the play began, ms.
     pub t_ms: f64,
-    /// What happened.
+    /// Description of the event.
     pub what: String,
 }
 

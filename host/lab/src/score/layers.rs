@@ -136,13 +136,13 @@ fn layer_score(title: &LayerTitle, fingers: &[Judgement]) -> Option<LayerScore> 
 }
 
 impl LayerScore {
-    /// Orders layers by how surely they are noticed, and then by the size of what is felt of them.
+    /// Orders layers by how surely they are noticed, and then by the size of the felt change.
     pub(super) fn cmp_felt(&self, other: &Self) -> Ordering {
         let by_verdict = self.simulated_fingers.cmp_felt(&other.simulated_fingers);
         by_verdict.then(self.size().total_cmp(&other.size()))
     }
 
-    /// The largest of contrast, step and texture, as a part of what is surely felt.
+    /// The largest of contrast, step and texture, relative to the size that is felt with certainty.
     fn size(&self) -> f64 {
         let Self { contrast_weber_steps, border, texture, .. } = self;
         let step = border.as_ref().map_or(0.0, |border| border.weber_steps.abs());

@@ -1,4 +1,4 @@
-//! The numbers of a score, what a person notices of them, and the goals.
+//! The numbers of a score, with perception thresholds and goals.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

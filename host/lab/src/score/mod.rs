@@ -1,8 +1,8 @@
 //! Scores a scene: how faithfully simulated fingers feel it, and what they notice of it, over strokes and seeds.
 //!
-//! The input is strokes with their seeds, and what the finger felt on each. The output is the [`Fidelity`] of each
-//! play, of each of its numbers the mean, the interval, and what a person notices, and how many of the simulated
-//! fingers notice each layer.
+//! The input is strokes with their seeds, and the felt friction of each. The output is the [`Fidelity`] of each play;
+//! the mean, the interval and the perception threshold of each of its numbers; and the number of simulated fingers that
+//! notice each layer.
 
 mod layers;
 mod metric;

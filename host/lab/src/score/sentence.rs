@@ -107,7 +107,7 @@ fn by_count(layers: &[&LayerScore], fingers: usize) -> String {
     listed_briefly(&parts.collect::<Vec<String>>())
 }
 
-/// How many fingers notice something, of those that touched it.
+/// Number of fingers that notice something, of the ones that touched it.
 fn count(verdicts: &Verdicts, fingers: usize) -> String {
     let Verdicts { touched, felt, .. } = *verdicts;
     if touched < fingers { format!("{felt} of {touched}") } else { felt.to_string() }

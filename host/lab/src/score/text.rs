@@ -114,7 +114,7 @@ impl Score {
     }
 }
 
-/// Keeps the least of more rows than there are lines for, in their order, and says how many are left out.
+/// Keeps the least of more rows than there are lines for, in their order, and returns how many are left out.
 fn keep_least<T>(rows: &mut Vec<T>, lines_max: usize, cmp: impl FnMut(&T, &T) -> Ordering) -> usize {
     let more = rows.len().saturating_sub(lines_max);
     if more > 0 {
@@ -170,7 +170,7 @@ fn level_text(level: &LevelScore) -> String {
     format!("{lower} and {higher}: told apart by {}; {steps} Weber steps", counts(simulated_fingers))
 }
 
-/// By how many fingers of those that touched it.
+/// Number of noticing fingers, of the ones that touched it.
 fn counts(verdicts: &Verdicts) -> String {
     let Verdicts { touched, felt, maybe, unknown, .. } = verdicts;
     let maybe = (*maybe > 0).then(|| format!(", maybe by {maybe}"));

@@ -1,10 +1,10 @@
 //! Studies of many simulated fingers: every combination of scenes, screens, touch sources, values of a scene's fields
 //! and people, each a [`Cell`].
 //!
-//! A [`Plan`] says which cells there are, and a [`Sweep`] makes each from its number. A cell holds all that its plays
-//! need, so that it is played by any process on any machine ([`Cell::play`]), and its key is a hash of that content.
-//! [`Study`] puts results together, in whatever order and by however many processes they were made: intervals are
-//! computed from the results of single fingers.
+//! A [`Plan`] defines the cells, and a [`Sweep`] makes each from its number. A cell holds all that its plays need, so
+//! that it is played by any process on any machine ([`Cell::play`]), and its key is a hash of that content. [`Study`]
+//! puts results together, in whatever order and by however many processes they were made: intervals are computed from
+//! the results of single fingers.
 
 mod cell;
 mod cells;

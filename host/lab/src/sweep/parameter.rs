@@ -126,9 +126,9 @@ pub(super) fn nearest_field(text: &str, path: &str) -> Option<String> {
 
 /// The part of a path that does not fit.
 enum Misplaced<'p> {
-    /// It is no table, or no field.
+    /// It is not a table, or not a field.
     Part(&'p str),
-    /// It is no layer, of so many.
+    /// There is no such layer; the scene has this many.
     Layer(&'p str, usize),
 }
 

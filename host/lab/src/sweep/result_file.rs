@@ -36,7 +36,7 @@ impl CellResult {
             Some((hash, format!("{{{}", rest.strip_prefix(BEHIND)?)))
         };
         let Some((hash, content)) = hashed() else {
-            // A text that is no JSON at all has a better sentence.
+            // Text that is not JSON at all gets a better message.
             let _: Self = serde_json::from_str(text)?;
             return Err(CellResultError::Changed);
         };

@@ -184,7 +184,7 @@ fn column(name: &str, unit: &str, meaning: &str, values: Values) -> Column {
     Column { field: Field::of((name, unit, meaning, kind)), values }
 }
 
-/// Columns as CSV, with texts in quotes; a cell of what is unknown is empty.
+/// Columns as CSV, with strings in quotes; unknown values are empty cells.
 fn csv(columns: &[Column]) -> String {
     let names = columns.iter().map(|column| {
         let name = &column.field.name;

@@ -1,4 +1,4 @@
-//! Why a table is rejected: what was found, and what to do about it.
+//! Why a table is refused: what was found, and what to do about it.
 
 use std::io;
 
@@ -22,7 +22,7 @@ impl TableError {
         Self { found: found.into(), advice: advice.into(), source: None }
     }
 
-    /// The input is no table.
+    /// The input is not a table.
     pub(super) fn no_table(found: impl Into<String>) -> Self {
         Self::new(found, NO_TABLE)
     }

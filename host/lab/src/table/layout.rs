@@ -43,7 +43,7 @@ impl Line {
         2 * filled.clone().filter(|cell| is_number(cell)).count() > filled.count()
     }
 
-    /// Whether each cell is a unit, or says that there is none.
+    /// Whether each cell is a unit, or a mark for none.
     fn has_units(&self) -> bool {
         let has_unit = |cell: &String| is_unit(cell);
         self.cells.iter().any(has_unit) && self.cells.iter().all(|cell| has_unit(cell) || matches!(&**cell, "" | "-"))

@@ -105,7 +105,7 @@ impl<'n> Parts<'n> {
         format!("{}_{}{}", self.stem, scale.in_names(), self.rest)
     }
 
-    /// The unit in words with what else the name says: `volts rms`.
+    /// The unit in words with the rest of the name: `volts rms`.
     fn words(&self, scale: Scale) -> String {
         format!("{}{}", scale.words, self.rest.replace('_', " "))
     }
@@ -188,7 +188,7 @@ pub(super) fn named(header: &str, name: &str, unit: Unit) -> Named {
     Named::Doubtful { readings, advice }
 }
 
-/// The name that stands for a column in its own unit, or in that which a header states, in words.
+/// The name of a column in its own unit, or in the unit of the header, in words.
 pub(super) fn words(name: &str, unit: Unit, scale: Scale) -> String {
     Parts::of(name, unit).map_or_else(|| scale.words.to_owned(), |parts| parts.words(scale))
 }
@@ -223,7 +223,7 @@ fn without_rest<'t>(text: &'t str, rest: &str) -> (&'t str, bool) {
 struct Label {
     /// A unit in the name itself.
     unit: Option<Written>,
-    /// Whether it says what the column's name says behind the unit, such as `_rms`.
+    /// Whether it has the ending of the column's name behind the unit, such as `_rms`.
     says_rest: bool,
 }
 

@@ -54,7 +54,7 @@ pub(super) fn end_of_lines(bytes: &[u8]) -> usize {
     place.unwrap_or_default()
 }
 
-/// An input whose text comes out as UTF-8. What is no UTF-16 becomes the replacement character; UTF-8 is not checked.
+/// An input whose text comes out as UTF-8. Invalid UTF-16 becomes the replacement character; UTF-8 is not checked.
 pub(super) struct Utf8<R> {
     input: Chain<Cursor<Vec<u8>>, R>,
     order: Option<ByteOrder>,

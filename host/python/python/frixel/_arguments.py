@@ -141,6 +141,6 @@ def participant_code(value: object) -> str:
     """The code of a participant, by the rule of `frixel play --participant`."""
     if not (isinstance(value, str) and re.fullmatch(r"[A-Za-z0-9_.-]{1,32}", value)):
         raise ParameterError(
-            f"participant {shown(value)}: give a code of 1 to 32 letters, digits, -, _ and ., and no name"
+            f"participant {shown(value)}: use a code of 1 to 32 letters, digits, -, _ and ., not a name"
         )
     return value

@@ -54,7 +54,7 @@ def _text(text: str) -> str:
 
 def _inline(value: Any, depth: int = 0) -> str:
     if depth > NESTING_MAX:
-        raise ParameterError(f"tables and lists are nested at most {NESTING_MAX} deep: nest fewer")
+        raise ParameterError(f"tables and lists may be nested at most {NESTING_MAX} deep: flatten them")
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

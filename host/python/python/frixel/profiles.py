@@ -90,7 +90,7 @@ class _Profile:
         if isinstance(profile, str):
             if profile.endswith(".toml"):
                 raise ParameterError(
-                    f"{shown(profile)}: a text is the name of a bundled {cls.kind}; {cls.__name__}.load reads a file"
+                    f"{shown(profile)}: a string is the name of a bundled {cls.kind}; {cls.__name__}.load reads a file"
                 )
             return cls.bundled(profile)
         if isinstance(profile, Mapping):

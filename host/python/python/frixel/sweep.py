@@ -97,7 +97,7 @@ class Study:
     def __init__(self, results: Iterable[str]) -> None:
         texts = list(each("results", results))
         if not texts or not all(isinstance(text, str) for text in texts):
-            raise ParameterError("a study needs one result or more, texts made by `sweep.play`")
+            raise ParameterError("a study needs one result or more, strings made by `sweep.play`")
         lines, self.files = _frixel.study_files(texts)
         self.words = "\n".join(lines)
 
@@ -146,7 +146,7 @@ class Study:
         for path in there:
             if read_bytes(path, FrixelError) != files[path]:
                 raise FrixelError(
-                    f"{path} is of another study: give another folder, or `overwrite=True` to replace that study"
+                    f"{path} is from another study: give another folder, or `overwrite=True` to replace that study"
                 )
         _frixel.write_files(files, overwrite)
 

@@ -64,7 +64,7 @@ pub(super) struct Report {
 pub(super) enum Trouble {
     /// The Python program was interrupted; the board is disarmed.
     Signal(PyErr),
-    /// A value was rejected; the board continues as before.
+    /// A value was refused; the board continues as before.
     Parameter(String),
     /// The board refuses, has stopped, or is gone.
     Play(String),

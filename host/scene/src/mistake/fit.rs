@@ -99,7 +99,7 @@ pub(crate) enum FitMistake {
          the reach, more than {max_percent} %: lower `voltage_max_v_rms`, or give the finger `stiffness_pa_per_m`"
     )]
     SoftFinger { found_percent: f64, max_percent: f64 },
-    /// The contact model or its table rejects the combination of numbers, each of which is in range.
+    /// The contact model or its table refuses the combination of numbers, each of which is in range.
     #[error("this finger on this coating cannot be played ({reason}): check finger, coating and `voltage_max_v_rms`")]
     Model { reason: String },
 }

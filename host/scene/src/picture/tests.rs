@@ -147,7 +147,7 @@ fn a_photograph_is_turned_upright() {
             assert_eq!(is_said, number != 1, "orientation {number}: {:?}", picture.conversions);
         }
     }
-    // What cannot be read is no orientation.
+    // Unreadable data give no orientation.
     assert_eq!(decoded(&with_orientation(COLOURS, 9, true)), plain);
     let mut broken = with_orientation(COLOURS, 6, true);
     broken[14] = 0xff;

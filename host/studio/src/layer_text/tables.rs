@@ -13,7 +13,7 @@ struct Section {
     start: usize,
     /// End of the last value in it.
     end: usize,
-    /// Number of the layer that it is, or that it is a part of.
+    /// Number of its own layer, or of the layer that contains it.
     layer: Option<usize>,
 }
 
@@ -21,7 +21,7 @@ struct Section {
 struct Headed {
     /// The text between the value before and the header: empty lines, comments and the header's indent.
     prefix: Range<usize>,
-    /// Number of the layer that it is, or that it is a part of.
+    /// Number of its own layer, or of the layer that contains it.
     layer: Option<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! The parts of tick and main loop in the self-test: the board's own, except those that could drive anything.
+//! Tick and main loop in the self-test: the board's own parts, except the ones that could drive anything.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 

@@ -205,7 +205,7 @@ impl<L: RecordedLink> Play<'_, L> {
         let no_verdict = match (&judged, stream) {
             (Some(_), _) => None,
             _ if !target.is_virtual_time() => None,
-            (None, Some(_)) => Some("no study says what a person feels of a stream"),
+            (None, Some(_)) => Some("no study covers what a person feels of a stream"),
             (None, None) => Some("something changed the scene while it played"),
         };
         let realtime_factor = target.is_virtual_time().then(|| played_s / playing.as_secs_f64());

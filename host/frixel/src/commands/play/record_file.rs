@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(read(&partial), kept);
         fs::rename(&partial, folder.path().join("me.parquet")).unwrap();
         let error = start(folder.path()).err().unwrap().to_string();
-        assert!(error.contains("me.parquet is a recording of a person, which no result replaces"), "{error}");
+        assert!(error.contains("me.parquet is a recording of a person, and results do not overwrite it"), "{error}");
     }
 
     #[test]

@@ -82,7 +82,7 @@ impl<'b> Thrift<'b> {
         u64::try_from(self.signed()?).map_err(|_| damaged("a count is negative"))
     }
 
-    /// Skips a value, which is in a list or in a field that is no switch.
+    /// Skips a value, which is in a list or in a field that is not a switch.
     pub(super) fn skip(&mut self, kind: u8) -> Result<(), RecordingError> {
         match kind {
             TRUE | FALSE | I8 => self.byte().map(drop),

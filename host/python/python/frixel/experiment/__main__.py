@@ -161,7 +161,7 @@ def experiment(arguments: argparse.Namespace) -> None:
     if not 12 <= trials <= 200:
         raise ParameterError(f"--trials is 12 to 200, found {trials}")
     if (arguments.port is None) == (arguments.observer is None):
-        raise ParameterError("give --port PATH, or --observer SEED for a simulated observer, who feels no board")
+        raise ParameterError("give --port PATH, or --observer SEED for a simulated observer, who needs no board")
     observer = None if arguments.observer is None else observer_of(arguments.observer)
     settings = [arguments.method, trials, highest, arguments.observer, arguments.screen]
     with contextlib.ExitStack() as stack:
@@ -181,7 +181,7 @@ def experiment(arguments: argparse.Namespace) -> None:
             )
         )
         if session.rows:
-            say(f"  goes on after trial {len(session.rows)}, the last one with an answer")
+            say(f"  resumes after trial {len(session.rows)}, the last one with an answer")
 
         def play(trial: Trial) -> None:
             if board is not None:
@@ -206,7 +206,7 @@ def experiment(arguments: argparse.Namespace) -> None:
         truth = float(detection.voltage_of(observer.threshold(TWO_ALTERNATIVES), highest))
         say(f"  the observer     has a threshold of {truth:.1f} V rms")
         who = f", simulated observer {arguments.observer}"
-    say("  note             the threshold has no newtons: write scenes in fractions of what can be reached")
+    say("  note             the threshold is not a force: write scenes in fractions of the reach")
     name = {"quest": "QUEST+", "up-down": "up-down staircase"}[arguments.method]
     finger = detection.perceptual_finger(
         threshold,
@@ -255,7 +255,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"frixel.experiment: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("frixel.experiment: interrupted; the same command goes on with this session", file=sys.stderr)
+        print("frixel.experiment: interrupted; the same command resumes this session", file=sys.stderr)
         return 1
     return 0
 

@@ -129,7 +129,7 @@ class Folder:
     def check_open(self) -> None:
         """Refuses a folder that is closed."""
         if self._lock.closed:
-            raise ExperimentError("this session is closed: open it again, and it goes on")
+            raise ExperimentError("this session is closed: open it again to resume it")
 
     def _begun(self, manifest: dict[str, Any]) -> dict[str, Any]:
         """The manifest of the folder, checked against this one; a new one if the folder has none."""
@@ -146,7 +146,7 @@ class Folder:
             found = earlier.get(name) if isinstance(earlier, dict) else None
             if found != value:
                 raise ExperimentError(
-                    f"this folder is that of another session: {name} is {found!r} there, and {value!r} here: "
+                    f"this folder belongs to another session: {name} is {found!r} there, and {value!r} here: "
                     "give another folder"
                 )
         return {RECORDINGS: {}, **earlier}
@@ -231,14 +231,14 @@ def _mistake(row: object, number: int) -> str | None:
 
 def _no_trial(path: Path, number: int, reason: str) -> ExperimentError:
     return ExperimentError(
-        f"line {number + 1} of {path.name} is not a trial ({reason}): take the file from a copy, or cut it before this "
-        "line, and the session goes on there"
+        f"line {number + 1} of {path.name} is not a trial ({reason}): take the file from a copy, or cut it before "
+        "this line to resume the session there"
     )
 
 
 def _locked(path: Path) -> BinaryIO:
     """A file that this process has locked exclusively, until `_unlock` or its end."""
-    taken = ExperimentError("another process writes into this folder: wait for its end, or give another one")
+    taken = ExperimentError("another process is writing to this folder: wait until it ends, or give another one")
     try:
         file = path.open("ab")
     except OSError as error:

@@ -178,10 +178,10 @@ class Session:
         if not (on is None or isinstance(on, Device)):
             raise refusal("`on`", "a board from Device.open", on)
         if on is not None and (settings or seconds is None):
-            raise ParameterError("a play on a board takes `seconds`, and no settings of the simulator")
+            raise ParameterError("a play on a board accepts `seconds`, but no settings of the simulator")
         if self._trial_now is None:
             raise ExperimentError(
-                "no trial runs to which this play could belong: call it within `play` or `answer` of `run`, or use "
+                "no trial is running that this play could belong to: call it within `play` or `answer` of `run`, or use "
                 "Simulator or Device.record"
             )
         began_s = self._now_s()
@@ -250,7 +250,7 @@ class Session:
         if not (hasattr(method, "next_level") and hasattr(method, "answer")):
             raise refusal("method", "a Method, such as QuestPlus", method)
         if self._is_cut_off:
-            raise ExperimentError("the previous run was cut off: open the session again, and it goes on there")
+            raise ExperimentError("the previous run was cut off: open the session again to resume it there")
         self._is_cut_off = True
         answers = Answers()
         for practised in practised_levels:
