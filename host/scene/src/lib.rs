@@ -111,6 +111,7 @@ pub use scenario::{
 pub use scene_profiles::ProfileSource;
 pub use schema::json_schema;
 pub use screen::{Screen, Slab};
+pub use source::Lines;
 pub use target_range::{OutOfReach, TargetRange};
 pub use tick_cost::middle_mm;
 pub use titles::{LayerNumber, LayerTitle, fold_copies};

@@ -21,8 +21,29 @@ pub(super) struct SourceFile {
     pub(super) start: usize,
     /// Numbers of the included files.
     pub(super) includes: Vec<usize>,
-    /// Offsets of all lines of the text but the first.
-    line_starts: Vec<usize>,
+    lines: Lines,
+}
+
+/// The lines of a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lines {
+    /// Offsets of all lines but the first.
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    /// The lines of `text`.
+    pub fn of(text: &str) -> Self {
+        Self { starts: text.match_indices('\n').map(|(newline, _)| newline + 1).collect() }
+    }
+
+    /// Line and column of a byte offset in the text, both from one. The column counts characters.
+    pub fn line_and_column(&self, text: &str, offset: usize) -> (usize, usize) {
+        let line = self.starts.partition_point(|start| *start <= offset);
+        let line_start = line.checked_sub(1).and_then(|last| self.starts.get(last)).copied().unwrap_or(0);
+        let column = text.get(line_start..offset).map_or(0, |start| start.chars().count());
+        (line + 1, column + 1)
+    }
 }
 
 impl Source {
@@ -36,8 +57,8 @@ impl Source {
     pub(super) fn add(&mut self, name: String, path: String, text: String) -> usize {
         // One more than the text's length, so that the end of a file is a distinct place.
         let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
-        let line_starts = text.match_indices('\n').map(|(newline, _)| newline + 1).collect();
-        self.files.push(SourceFile { name, path, text, start, includes: Vec::new(), line_starts });
+        let lines = Lines::of(&text);
+        self.files.push(SourceFile { name, path, text, start, includes: Vec::new(), lines });
         self.files.len() - 1
     }
 
@@ -89,12 +110,8 @@ impl Source {
 
     /// Line and column of a byte offset in its file, both from one. The column counts characters.
     pub(super) fn line_and_column(&self, offset: usize) -> (usize, usize) {
-        let Some(file) = self.files.get(self.number_at(offset)) else { return (1, 1) };
-        let offset = offset - file.start;
-        let line = file.line_starts.partition_point(|start| *start <= offset);
-        let line_start = line.checked_sub(1).and_then(|last| file.line_starts.get(last)).copied().unwrap_or(0);
-        let column = file.text.get(line_start..offset).map_or(0, |start| start.chars().count());
-        (line + 1, column + 1)
+        let file = self.files.get(self.number_at(offset));
+        file.map_or((1, 1), |file| file.lines.line_and_column(&file.text, offset - file.start))
     }
 
     /// The key, value or table header at a byte offset; only its first line if it has several.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use frixel_scene::{Nearest, brief};
+use frixel_scene::{Lines, Nearest, brief};
 use serde::{Deserialize, Serialize};
 use toml::de::{DeTable, DeValue};
 use toml_edit::{DocumentMut, Item, TableLike};
@@ -86,7 +86,7 @@ fn set_at<'p>(document: &mut DocumentMut, path: &'p str, value: &Value) -> Resul
 }
 
 /// Whether a scene has the field at a path, or its value, at a line and column.
-pub(super) fn has_at(text: &str, path: &str, (line, column): (usize, usize)) -> bool {
+pub(super) fn has_at(text: &str, path: &str, place: (usize, usize)) -> bool {
     let span = || {
         let root = DeValue::Table(DeTable::parse(text).ok()?.into_inner());
         path.split('.')
@@ -103,10 +103,9 @@ pub(super) fn has_at(text: &str, path: &str, (line, column): (usize, usize)) -> 
             })
             .map(|(span, _)| span)
     };
-    let line_start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
-    let before = text.get(line_start..).into_iter().flat_map(str::chars).take(column - 1);
-    let offset = line_start + before.map(char::len_utf8).sum::<usize>();
-    span().is_some_and(|span| span.contains(&offset))
+    let lines = Lines::of(text);
+    let at = |offset| lines.line_and_column(text, offset);
+    span().is_some_and(|span| (at(span.start)..at(span.end)).contains(&place))
 }
 
 /// The field of a scene whose name is nearest to that at a path, in the same table.

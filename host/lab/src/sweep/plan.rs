@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use frixel_hil_sim::TouchConfig;
-use frixel_scene::{FileKind, Nearest, brief, check_toml};
+use frixel_scene::{FileKind, Lines, Nearest, brief, check_toml};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toml::de::DeTable;
@@ -182,7 +182,8 @@ impl Places {
     fn of(text: &str, file: &str) -> Self {
         let plan = DeTable::parse(text).map(toml::Spanned::into_inner).unwrap_or_default();
         let mut fields = BTreeMap::new();
-        let mut add = |key: String, offset| _ = fields.insert(key, line_and_column(text, offset));
+        let lines = Lines::of(text);
+        let mut add = |key: String, offset| _ = fields.insert(key, lines.line_and_column(text, offset));
         for (field, value) in &plan {
             add(field.get_ref().to_string(), field.span().start);
             for (path, _) in value.get_ref().as_table().into_iter().flatten() {
@@ -211,13 +212,6 @@ impl Places {
     }
 }
 
-/// Line and column of a byte offset, both from one. The column counts characters.
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset).unwrap_or_default();
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (before.matches('\n').count() + 1, before.get(line_start..).unwrap_or_default().chars().count() + 1)
-}
-
 /// Why a plan is invalid, in a sentence that names the file and the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
@@ -228,7 +222,7 @@ impl Plan {
     pub fn parse(text: impl AsRef<[u8]>, name: &str) -> Result<Self, PlanError> {
         let text = FileKind::Plan.text(text.as_ref(), name).map_err(|error| PlanError(error.to_string()))?;
         let refused = |kind: &str, error: &toml::de::Error| {
-            let (line, column) = line_and_column(text, error.span().map_or(0, |span| span.start));
+            let (line, column) = Lines::of(text).line_and_column(text, error.span().map_or(0, |span| span.start));
             PlanError(format!("{name}:{line}:{column}: {kind}{}", brief(error.message())))
         };
         check_toml(text).map_err(|mistake| PlanError(format!("{name}: {mistake}")))?;
