@@ -8,7 +8,7 @@ use frixel_wire::fault::Fault;
 use frixel_wire::hello::{BoardLimits, notice};
 
 use crate::board_rig::{BoardRig, BoardView, RigError, RigFault, RigTick};
-use crate::{AmplifierConfig, Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
+use crate::{Line, Stroke, World, WorldConfig, WorldError, WorldOptions};
 
 /// Capacity of a board's receive buffer beyond the host's credit, for hello requests, which need no credit, and for
 /// noise.
@@ -54,10 +54,9 @@ pub struct RigConfig {
 }
 
 impl Default for RigConfig {
-    /// The simulator's own board with [`AmplifierConfig::IDEAL`].
+    /// The simulator's own board.
     fn default() -> Self {
-        let rig = Self::of(Board::SIMULATOR);
-        Self { world: WorldConfig { amplifier: AmplifierConfig::IDEAL, ..rig.world }, ..rig }
+        Self::of(Board::SIMULATOR)
     }
 }
 

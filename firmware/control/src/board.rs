@@ -153,15 +153,9 @@ impl Board {
         }
     }
 
-    /// The real board with this name; `None` for an unknown name.
-    pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "nucleo-g474re" => Some(Self::NUCLEO_G474RE),
-            "pico-2" => Some(Self::PICO_2),
-            "pico" => Some(Self::PICO),
-            _ => None,
-        }
-    }
+    /// The real boards with their names, the default first.
+    pub const NAMED: [(&'static str, Self); 3] =
+        [("nucleo-g474re", Self::NUCLEO_G474RE), ("pico-2", Self::PICO_2), ("pico", Self::PICO)];
 
     /// This board with another resistance between amplifier and electrode, and with the full scale stored as its
     /// largest voltage. The edges and the touch bound are those of the resistance.
@@ -175,9 +169,6 @@ impl Board {
         let limits = BoardLimits { voltage_max_v_peak, edge_time_constant_s, series_resistance_ohm, ..self.limits };
         Self { limits, ..self }
     }
-
-    /// The names accepted by [`Self::named`].
-    pub const NAMES: [&'static str; 3] = ["nucleo-g474re", "pico-2", "pico"];
 
     /// The ceilings of this board's output.
     pub fn ceilings(&self) -> Ceilings {

@@ -51,13 +51,16 @@ impl AmplifierConfig {
     pub const REALISTIC: Self = Self { offset_v: 0.5, slew_v_per_s: 5e-3 / 0.53e-9, ..Self::IDEAL };
 
     /// [`Self::IDEAL`] with the lags that a board states for its amplifier and its electrode, the latter from its
-    /// series resistance. A board without series resistance states both as one lag of the electrode.
+    /// series resistance. A board without series resistance states both as one lag of the electrode. The simulator's
+    /// own board has [`Self::IDEAL`].
     pub fn of(board: &Board) -> Self {
         let BoardLimits { series_resistance_ohm, electrode_capacitance_max_f, edge_time_constant_s, .. } = board.limits;
-        let electrode_s = series_resistance_ohm * electrode_capacitance_max_f;
+        let electrode_s = f64::from(series_resistance_ohm * electrode_capacitance_max_f);
+        // To a nanosecond, the limit is the number that the board states.
+        let edge_s = libm::round(1e9 * f64::from(edge_time_constant_s)) / 1e9;
         Self {
             output_time_constant_s: board.amplifier.time_constant_s.into(),
-            electrode_time_constant_s: if electrode_s.is_finite() { electrode_s } else { edge_time_constant_s }.into(),
+            electrode_time_constant_s: if electrode_s.is_finite() { electrode_s } else { edge_s },
             ..Self::IDEAL
         }
     }

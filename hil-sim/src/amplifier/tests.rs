@@ -228,3 +228,8 @@ fn a_broken_output_stage_keeps_its_voltage_until_it_is_repaired() {
     let mut repaired = amplifier.reconfigured(&AmplifierConfig::IDEAL, FULL_SCALE_V_PEAK, TICK_HZ).unwrap();
     assert_eq!(monitored_v(&mut repaired, OFF, 2)[1], 0.0);
 }
+
+#[test]
+fn the_simulators_own_board_has_the_ideal_amplifier() {
+    assert_eq!(AmplifierConfig::of(&frixel_control::Board::SIMULATOR), AmplifierConfig::IDEAL);
+}

@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
 use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use frixel_hil_sim::Board;
 use frixel_lab::simulate::STROKE_MAX_S;
 use frixel_scene::has_unit;
 
@@ -43,6 +45,15 @@ where
         let expected = || format!("expected a whole number from {} to {}", range.start(), range.end());
         text.parse().ok().filter(|number| range.contains(number)).ok_or_else(expected)
     }
+}
+
+/// Returns a parser of the names of real boards.
+pub(super) fn board() -> impl TypedValueParser<Value = Board> {
+    let of_name = |name: String| {
+        let named = Board::NAMED.into_iter().find(|(other, _)| *other == name);
+        named.map(|(_, board)| board).ok_or("unknown board")
+    };
+    PossibleValuesParser::new(Board::NAMED.map(|(name, _)| name)).try_map(of_name)
 }
 
 /// Parses a part of a whole, such as `2/8`.

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use frixel_felt::check::{SceneCheck, feel};
 use frixel_felt::judge::{Advice, weber_steps, weber_steps_text};
 use frixel_hil_sim::{Board, RigConfig, WorldOptions};
@@ -28,8 +27,8 @@ pub(super) struct CheckArgs {
     touch: TouchArgs,
     /// Check for a real board: what it refuses, and what is felt within its limits. Default: the simulated board, which
     /// has no touch bound.
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Board::NAMES))]
-    board: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = argument::board())]
+    board: Option<Board>,
     /// Series resistance in place of that board's, kOhm; voltages go up to its touch bound (`frixel board safety`).
     #[arg(long, value_name = "KOHM", requires = "board", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
@@ -45,9 +44,8 @@ pub(super) struct CheckArgs {
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<()> {
-    let board = args.board.as_deref().and_then(Board::named);
-    let board = board.map(|board| behind(board, args.series_kohm)).transpose()?;
-    let rig = board.map_or_else(RigConfig::default, RigConfig::of);
+    let board = args.board.map(|board| behind(board, args.series_kohm)).transpose()?;
+    let rig = RigConfig::of(board.unwrap_or(Board::SIMULATOR));
     let world = WorldOptions { touch: args.touch.source()?, ..WorldOptions::default() };
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let compiled = scene.and_then(|scene| {

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use anyhow::Result;
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use frixel_hil_sim::Board;
 use frixel_layers::HALF_PERIOD_MIN_TICKS;
 use frixel_model::{
@@ -40,8 +39,8 @@ const SERIES_DECADES_OHM: [f64; 3] = [1e3, 1e4, 1e5];
 #[derive(Debug, Args)]
 pub(in crate::commands) struct SafetyArgs {
     /// The board whose limits and series resistance apply.
-    #[arg(long, value_name = "NAME", default_value = Board::NAMES[0], value_parser = PossibleValuesParser::new(Board::NAMES))]
-    board: String,
+    #[arg(long, value_name = "NAME", default_value = Board::NAMED[0].0, value_parser = argument::board())]
+    board: Board,
     /// Resistance between amplifier and electrode in place of the board's, kOhm.
     #[arg(long, value_name = "KOHM", value_parser = argument::positive, allow_negative_numbers = true)]
     series_kohm: Option<f64>,
@@ -55,7 +54,7 @@ pub(in crate::commands) struct SafetyArgs {
 
 pub(super) fn run(args: &SafetyArgs) -> Result<()> {
     let gap_m = scene_file::profile::<Screen>(&args.screen)?.coating_gap_m();
-    let board = Board::named(&args.board).unwrap_or(Board::NUCLEO_G474RE);
+    let board = args.board;
     let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);
     let table = Table { board, series_ohm, capacitance_f: VACUUM_PERMITTIVITY_F_PER_M * CONTACT_M2 / gap_m };
     print(format!(
