@@ -42,7 +42,7 @@ pub use error::{OutOfRange, WorldError};
 pub use fingertip::{FingertipConfig, RELAXATION_LENGTH_M, SlipStep, example_finger, one_minus_exp};
 pub use frixel_control::{Board, Drive, Status};
 pub use frixel_session::{active_bytes_filled, table_rows};
-pub use line::{Line, LineCounts, LineFault};
+pub use line::Line;
 pub use line_noise::{LineNoise, NoiseConfig};
 pub use person::Person;
 #[cfg(unix)]

@@ -1,31 +1,11 @@
 //! One direction of a serial line, in virtual time.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 use crate::error::OutOfRange;
 
 /// Start bit, eight data bits, stop bit.
 const BITS_PER_BYTE: u64 = 10;
-
-/// A fault of the line at one byte.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineFault {
-    /// The byte is lost.
-    Drop,
-    /// The set bits are inverted.
-    Flip(u8),
-}
-
-/// Byte counts by outcome.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LineCounts {
-    /// Bytes passed to [`Line::send`], including those that a full queue has rejected.
-    pub sent: u64,
-    /// Bytes that arrived, including those with flipped bits.
-    pub delivered: u64,
-    /// Bytes lost on the line.
-    pub lost: u64,
-}
 
 /// One direction of a serial line: a byte takes ten bit times, in virtual ticks.
 ///
@@ -52,9 +32,9 @@ pub struct Line {
     progress: u64,
     queue: VecDeque<u8>,
     queue_max_len: usize,
-    delivered: Vec<u8>,
-    faults: BTreeMap<u64, LineFault>,
-    counts: LineCounts,
+    arrived: Vec<u8>,
+    /// Number of bytes that have arrived.
+    delivered: u64,
 }
 
 impl Line {
@@ -71,16 +51,9 @@ impl Line {
             progress: 0,
             queue: VecDeque::new(),
             queue_max_len: usize::MAX,
-            delivered: Vec::new(),
-            faults: BTreeMap::new(),
-            counts: LineCounts::default(),
+            arrived: Vec::new(),
+            delivered: 0,
         })
-    }
-
-    /// Schedules `fault` for byte number `byte`, counted from 0 since creation. It replaces an earlier fault of the
-    /// same byte, and has no effect on a byte that has already left the line.
-    pub fn schedule_fault(&mut self, byte: u64, fault: LineFault) {
-        self.faults.insert(byte, fault);
     }
 
     /// Limits the queue to `len` bytes from now on. Further bytes are lost.
@@ -92,38 +65,26 @@ impl Line {
     pub fn send(&mut self, bytes: &[u8]) {
         let room = self.queue_max_len.saturating_sub(self.queue.len());
         self.queue.extend(bytes.iter().take(room));
-        self.counts.sent += bytes.len() as u64;
     }
 
     /// Advances one tick, and returns the bytes that arrived in it.
     pub fn tick(&mut self) -> &[u8] {
-        self.delivered.clear();
+        self.arrived.clear();
         if self.queue.is_empty() {
-            return &self.delivered;
+            return &self.arrived;
         }
         self.progress += self.progress_per_tick;
         while self.progress >= self.byte_cost {
             let Some(byte) = self.queue.pop_front() else { break };
             self.progress -= self.byte_cost;
-            self.arrive(byte);
+            self.delivered += 1;
+            self.arrived.push(byte);
         }
         if self.queue.is_empty() {
             // The next byte cannot start before `send` queues it.
             self.progress = 0;
         }
-        &self.delivered
-    }
-
-    fn arrive(&mut self, byte: u8) {
-        let number = self.counts.delivered + self.counts.lost;
-        let fault = if self.faults.is_empty() { None } else { self.faults.remove(&number) };
-        if fault == Some(LineFault::Drop) {
-            self.counts.lost += 1;
-            return;
-        }
-        let flips = if let Some(LineFault::Flip(bits)) = fault { bits } else { 0 };
-        self.counts.delivered += 1;
-        self.delivered.push(byte ^ flips);
+        &self.arrived
     }
 
     /// Number of bytes that are queued or on the line.
@@ -131,9 +92,9 @@ impl Line {
         self.queue.len()
     }
 
-    /// Byte counts so far.
-    pub fn bytes(&self) -> LineCounts {
-        self.counts
+    /// Number of bytes that have arrived so far.
+    pub fn delivered(&self) -> u64 {
+        self.delivered
     }
 }
 
@@ -141,7 +102,7 @@ impl Line {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{Line, LineCounts, LineFault};
+    use super::Line;
 
     const TICK_HZ: u32 = 40_000;
 
@@ -185,16 +146,6 @@ mod tests {
     }
 
     #[test]
-    fn faults_hit_the_byte_that_they_are_meant_for() {
-        let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
-        line.schedule_fault(1, LineFault::Drop);
-        line.schedule_fault(3, LineFault::Flip(0b0100_0001));
-        line.send(&[10, 11, 12, 13, 14]);
-        assert_eq!(line.tick(), [10, 12, 0b1101 ^ 0b0100_0001, 14]);
-        assert_eq!(line.bytes(), LineCounts { sent: 5, delivered: 4, lost: 1 });
-    }
-
-    #[test]
     fn bytes_beyond_a_full_queue_are_lost_at_once() {
         let mut line = Line::new(2_000_000, TICK_HZ).unwrap();
         line.limit_queue(7);
@@ -203,7 +154,7 @@ mod tests {
         assert_eq!(line.tick(), [1, 2, 3, 4, 5]);
         line.send(&[10]);
         assert_eq!(line.tick(), [6, 7, 10]);
-        assert_eq!(line.bytes(), LineCounts { sent: 10, delivered: 8, lost: 0 });
+        assert_eq!(line.delivered(), 8);
     }
 
     #[test]

@@ -60,23 +60,22 @@ fn ticks_to_dac(bulk_frames: usize) -> u64 {
             script.step();
         }
         let before = amplitude(&script.step());
-        for number in 0..bulk_frames {
-            let mut frame = [0; FRAME_MAX_LEN];
-            script.rig.send(payload::chunk_frame(number as u16, &[7; CHUNK_LEN], &mut frame).unwrap());
-            if number == bulk_frames / 2 {
-                script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
+        let chunks = |script: &mut Script, count: usize| {
+            for number in 0..count {
+                let mut frame = [0; FRAME_MAX_LEN];
+                script.rig.send(payload::chunk_frame(number as u16, &[7; CHUNK_LEN], &mut frame).unwrap());
             }
-        }
-        if bulk_frames == 0 {
-            script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
-        }
-        let sent = script.rig.line_to_board_mut().bytes().sent;
-        let behind = bulk_frames.div_ceil(2).saturating_sub(1) as u64 * 192;
+        };
+        chunks(&mut script, bulk_frames / 2);
+        script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
+        let line = script.rig.line_to_board_mut();
+        let last_byte = line.delivered() + line.queued() as u64;
+        chunks(&mut script, bulk_frames / 2);
         let mut last_byte_tick = None;
         loop {
             let record = script.step();
             assert!(record.tick < 20_000, "the gain never reached the DAC");
-            if script.rig.line_to_board_mut().bytes().delivered >= sent - behind && last_byte_tick.is_none() {
+            if script.rig.line_to_board_mut().delivered() >= last_byte && last_byte_tick.is_none() {
                 last_byte_tick = Some(record.tick);
             }
             if amplitude(&record) != before {

@@ -11,7 +11,7 @@ use crate::script;
 use frixel_control::Board;
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{ReplayError, replay};
-use frixel_hil_sim::{Journal, LineFault, Point, RigConfig, Stroke, WorldFault};
+use frixel_hil_sim::{Journal, NoiseConfig, Point, RigConfig, Stroke, WorldFault};
 use frixel_layers::{
     Bitmap, Blend, Constant, Grating, Header, Layer, Point as Corner, Record, Region, Stream, Wave, Waveform,
 };
@@ -152,9 +152,9 @@ fn a_bad_day_is_the_same() {
         let header = Header { prediction: false, carrier_hz: 700.0, normal_load_n: 0.0, ..HEADER };
         script.play(&scene(&header, &records));
         script.command(Command::Subscribe { period_ticks: 400 });
-        for byte in [5, 60, 61, 62] {
-            script.rig.line_to_board_mut().schedule_fault(byte + 40_000, LineFault::Flip(0x10));
-        }
+        script.noise.set(NoiseConfig { bit_error_rate: 0.05, ..NoiseConfig::default() }).unwrap();
+        script.command(Command::Subscribe { period_ticks: 800 });
+        script.noise.set(NoiseConfig::default()).unwrap();
         script.command(Command::StartStream { sample_hz: 4_000, start_level: 100 });
         for frame in [0, 1, 3, 2, 3, 6] {
             script.samples(90 * frame, &[7_000, 60_000, 30_000].repeat(30));

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::script::{HEADER, Script, constant, scene};
-use frixel_hil_sim::{BoardMemory, LineFault, Point, RigConfig, RigTick, Status, Stroke, TouchConfig, WorldFault};
+use frixel_hil_sim::{BoardMemory, NoiseConfig, Point, RigConfig, RigTick, Status, Stroke, TouchConfig, WorldFault};
 use frixel_layers::{Header, Waveform};
 use frixel_testkit::Random;
 use frixel_wire::dac_code::DacCode;
@@ -157,10 +157,8 @@ fn anything(ticks: u64, seed: u64) -> Rc<RefCell<Monitor>> {
                 script.rig.send(&noise);
             }
             6 => {
-                let line = script.rig.line_to_board_mut();
-                let byte = line.bytes().sent + u64::from(random.below(200));
-                let bits = random.byte();
-                line.schedule_fault(byte, random.pick([LineFault::Drop, LineFault::Flip(bits)]));
+                let [bit_error_rate, lost_share] = [0; 2].map(|_| random.pick([0.0, 0.0, 0.0, 1e-3]));
+                script.noise.set(NoiseConfig { bit_error_rate, lost_share, ..NoiseConfig::default() }).unwrap();
             }
             7 => {
                 let (now, lasts) = (script.rig.tick(), u64::from(random.below(3_000)));

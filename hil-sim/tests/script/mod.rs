@@ -8,7 +8,7 @@
 )]
 
 use frixel_control::Status;
-use frixel_hil_sim::{BoardMemory, Rig, RigConfig, RigTick, Stroke};
+use frixel_hil_sim::{BoardMemory, LineNoise, Rig, RigConfig, RigTick, Stroke};
 use frixel_layers::Header;
 use frixel_testkit::Random;
 pub use frixel_testkit::{constant, record, scene, scene_with_points};
@@ -29,6 +29,8 @@ pub type Watch = Box<dyn FnMut(&RigTick<Status>, u64)>;
 /// A host that sends commands, and relies on the board to accept them.
 pub struct Script {
     pub rig: Rig<'static>,
+    /// Damage of what the host sends.
+    pub noise: LineNoise,
     pub watch: Option<Watch>,
     sequence: u16,
     status: Option<Status>,
@@ -38,20 +40,26 @@ impl Script {
     /// A host of a rig whose memory lives as long as the program.
     pub fn new(config: &RigConfig, stroke: Stroke, seed: u64) -> Self {
         let rig = Rig::new(Box::leak(BoardMemory::new()), config, stroke, seed).unwrap();
-        Self { rig, watch: None, sequence: 0, status: None }
+        Self { rig, noise: LineNoise::new(seed), watch: None, sequence: 0, status: None }
+    }
+
+    fn transmit(&mut self, bytes: &[u8]) {
+        let mut arrived = Vec::new();
+        self.noise.pass(bytes, &mut arrived);
+        self.rig.send(&arrived);
     }
 
     /// Sends a hello request.
     pub fn hello(&mut self) {
         let mut frame = [0; FRAME_MAX_LEN];
-        self.rig.send(payload::hello_request_frame(&mut frame).unwrap());
+        self.transmit(payload::hello_request_frame(&mut frame).unwrap());
         self.drain();
     }
 
     /// Sends samples of a stream, and runs until the line is idle.
     pub fn samples(&mut self, first_index: u32, samples: &[u16]) {
         let mut frame = [0; FRAME_MAX_LEN];
-        self.rig.send(payload::samples_frame(first_index, samples, &mut frame).unwrap());
+        self.transmit(payload::samples_frame(first_index, samples, &mut frame).unwrap());
         self.drain();
     }
 
@@ -71,7 +79,7 @@ impl Script {
         self.sequence += 1;
         let mut frame = [0; FRAME_MAX_LEN];
         let request = Request { sequence: self.sequence, command };
-        self.rig.send(payload::request_frame(&request, &mut frame).unwrap());
+        self.transmit(payload::request_frame(&request, &mut frame).unwrap());
     }
 
     pub fn upload_bitmap(&mut self, width: u16, height: u16, samples: &[u8]) -> u32 {
@@ -115,7 +123,7 @@ impl Script {
     fn chunks(&mut self, bytes: &[u8]) {
         for (number, chunk) in bytes.chunks(CHUNK_LEN).enumerate() {
             let mut frame = [0; FRAME_MAX_LEN];
-            self.rig.send(payload::chunk_frame(number as u16, chunk, &mut frame).unwrap());
+            self.transmit(payload::chunk_frame(number as u16, chunk, &mut frame).unwrap());
             // The line takes no more than the board's credit.
             self.drain();
         }
@@ -140,7 +148,7 @@ impl Script {
         let record = self.rig.step();
         self.status = Some(record.status);
         if let Some(watch) = &mut self.watch {
-            watch(&record, self.rig.line_to_board_mut().bytes().delivered);
+            watch(&record, self.rig.line_to_board_mut().delivered());
         }
         record
     }
