@@ -1,12 +1,11 @@
 //! Studies of many simulated fingers. Cells and results cross as the JSON of `frixel sweep`.
 
 use std::collections::BTreeMap;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use frixel_lab::input::{KeptFiles, SceneFolder, read_toml};
-use frixel_lab::sweep::{Cell, CellError, CellResult, CellResultError, Plan, PlanError, Source, Study, Sweep, json};
-use frixel_scene::{CompileError, FileKind, Scene as ParsedScene};
+use frixel_lab::sweep::{
+    Cell, CellError, CellResult, CellResultError, Plan, PlanError, PlanFileError, Study, Sweep, json,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::ThreadPoolBuilder;
@@ -27,6 +26,15 @@ impl From<PlanError> for Raised {
     }
 }
 
+impl From<PlanFileError> for Raised {
+    fn from(error: PlanFileError) -> Self {
+        Self(Python::attach(|py| match error {
+            PlanFileError::Mistakes(mistakes) => scene_error(py, &mistakes),
+            error @ PlanFileError::Unreadable { .. } => parameter_error(py, error),
+        }))
+    }
+}
+
 /// The cells of a plan. `name` is its name in messages. `scenes` has the texts and files of scenes that are not files
 /// in `folder`.
 #[pyfunction]
@@ -39,11 +47,7 @@ pub(crate) fn sweep_cells(
 ) -> PyResult<Vec<String>> {
     let cells = interruptible(py, |goes_on| -> Result<Vec<String>, Raised> {
         let plan = Plan::parse(plan, name)?;
-        let source = |name: &str| match scenes.get(name) {
-            Some((text, files)) => Ok(Source::new(name, text.clone(), files.clone())),
-            None => source_in(&folder, name),
-        };
-        let sweep = Sweep::new(plan, source, |kind, name| text_in(&folder, kind, name))?;
+        let sweep = Sweep::in_folder(plan, &folder, &scenes)?;
         for number in sweep.samples().into_iter().take_while(|_| goes_on().is_continue()) {
             let cell = sweep.cell(number)?;
             cell.check()
@@ -53,36 +57,6 @@ pub(crate) fn sweep_cells(
         numbers.map(|number| Ok(json(&sweep.cell(number)?))).collect()
     })?;
     cells.map_err(|Raised(error)| error)
-}
-
-/// A scene file with the files that it names.
-fn source_in(folder: &Path, name: &str) -> Result<Source, Raised> {
-    let path = folder.join(name);
-    let bytes = read_toml(&path).map_err(unreadable(&path, "check the path"))?;
-    let files = KeptFiles::new(Some(SceneFolder::of(&path)), NamedFiles::new());
-    ParsedScene::parse(&bytes, name, &files).map_err(mistakes)?;
-    let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source::new(name, text, files.into_kept()))
-}
-
-/// The text of the file of a screen or a touch source.
-fn text_in(folder: &Path, kind: FileKind, name: &str) -> Result<String, Raised> {
-    let path = folder.join(name);
-    let advice = "give its file, from the plan's folder, or a bundled one";
-    let bytes = read_toml(&path).map_err(unreadable(&path, advice))?;
-    kind.text(&bytes, name).map(str::to_owned).map_err(mistakes)
-}
-
-#[allow(clippy::needless_pass_by_value, reason = "a function for `map_err`")]
-fn mistakes(error: CompileError) -> Raised {
-    Raised(Python::attach(|py| scene_error(py, &error)))
-}
-
-fn unreadable(path: &Path, advice: &str) -> impl FnOnce(io::Error) -> Raised {
-    move |error| {
-        let sentence = format!("{} cannot be read ({error}): {advice}", path.display());
-        Raised(Python::attach(|py| parameter_error(py, sentence)))
-    }
 }
 
 /// Plays a cell. Returns its result.
@@ -95,7 +69,7 @@ pub(crate) fn play_cell(py: Python<'_>, cell: &str) -> PyResult<String> {
     let pool = ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|error| raised(py, "PlayError", (format!("no thread could be started: {error}"),)))?;
     let played = interruptible(py, |goes_on| pool.install(|| cell.play(goes_on)))?;
-    played.map(|result| result.to_json()).map_err(|error| exception(py, &cell.title(), error))
+    played.map(|result| result.to_json()).map_err(|error| exception(py, &cell.subject(&error), error))
 }
 
 /// Merges results, without checks for signals. Returns the summary's lines, and the files that `frixel sweep` writes.

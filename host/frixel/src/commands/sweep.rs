@@ -10,7 +10,6 @@ use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use frixel_lab::sweep::{CELLS, CellResult, Index, Plan, Study, Sweep, json};
 use frixel_play::TO_THE_END;
-use frixel_scene::FileKind;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
@@ -19,7 +18,6 @@ use super::error::{at, reading, unreadable};
 use super::jobs::JobsArgs;
 use super::terminal::{note, print_line};
 use crate::input;
-use crate::scene_file::gathered;
 use frixel_files::{Inputs, OutputFile, OutputFolder, commit_all, create_folder};
 
 /// The file that names the cells of the plan that was played last, in the folder of a study.
@@ -73,7 +71,7 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     let folder = plan_path.parent().unwrap_or(Path::new(""));
     let files = plan.scenes.iter().chain(&plan.screens).chain(&plan.touch).map(|name| folder.join(name));
     let inputs = Inputs::new(files.chain([plan_path.to_owned()]));
-    let sweep = gather(plan, folder)?;
+    let sweep = Sweep::in_folder(plan, folder, &BTreeMap::new())?;
     for number in sweep.samples() {
         let cell = sweep.cell(number)?;
         cell.check().map_err(|error| at(sweep.blame(&cell, &error))(error))?;
@@ -120,17 +118,6 @@ fn play(args: &SweepArgs, plan_path: &Path, out: &Path) -> Result<()> {
     print_line(format_args!("  {:<30} {played} played, {refusals}{had} already there, of {cells}", "cells"))?;
     refused.into_iter().collect::<Result<()>>()?;
     if parts == 1 { merge(out, &inputs) } else { Ok(()) }
-}
-
-/// A plan with its files, which are named relative to its folder.
-fn gather(plan: Plan, folder: &Path) -> Result<Sweep> {
-    let text = |kind: FileKind, name: &str| {
-        let path = folder.join(name);
-        let advice = "give its file, from the plan's folder, or a bundled one";
-        let bytes = input::read_toml(&path).map_err(unreadable(&path, advice))?;
-        Ok(kind.text(&bytes, name)?.to_owned())
-    };
-    Sweep::new(plan, |name| Ok(gathered(&folder.join(name), name)?), text)
 }
 
 /// The files of results in the folder of a study, one of each part.

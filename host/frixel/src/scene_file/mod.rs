@@ -8,11 +8,10 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 
-use frixel_lab::input::{KeptFiles, SceneFolder, check_path};
-use frixel_lab::sweep::Source;
+use frixel_lab::input::{SceneFolder, check_path};
 use frixel_scene::{
-    CompileError, FileUnavailable, Files, FingerProfile, Nearest, Profile, Program, Scene, Screen, TILDE_ADVICE,
-    compile,
+    CompileError, FileUnavailable, Files, FingerProfile, NamedProfile, Nearest, Profile, Program, Scene, Screen,
+    TILDE_ADVICE, compile,
 };
 use frixel_wire::hello::BoardLimits;
 use thiserror::Error;
@@ -94,32 +93,15 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 pub(crate) fn load_with_files(path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
     let file = path.display().to_string();
     let mut files = SceneFiles::new(path);
-    match read(path) {
+    match input::read_toml(path) {
         Ok(bytes) => {
             files.keep_scene(&bytes);
             let named = NamedFiles { folder: SceneFolder::of(path), files: RefCell::new(files) };
             let scene = Scene::parse(&bytes, &file, &named).map_err(SceneFileError::from);
             (scene, named.files.into_inner())
         }
-        Err(error) => (Err(error), files),
+        Err(source) => (Err(SceneFileError::Unreadable { file, source }), files),
     }
-}
-
-/// The bytes of a scene file.
-fn read(path: &Path) -> Result<Vec<u8>, SceneFileError> {
-    let file = path.display().to_string();
-    input::read_toml(path).map_err(|source| SceneFileError::Unreadable { file, source })
-}
-
-/// Reads a scene file with the bytes of the files that it names, for a play without these files. `name` is its name in
-/// results.
-pub(crate) fn gathered(path: &Path, name: &str) -> Result<Source, SceneFileError> {
-    let file = path.display().to_string();
-    let bytes = read(path)?;
-    let kept = KeptFiles::new(Some(SceneFolder::of(path)), BTreeMap::new());
-    Scene::parse(&bytes, &file, &kept)?;
-    let text = String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Source::new(name, text, kept.into_kept()))
 }
 
 /// Notes each file that a scene names before it is read.
@@ -147,22 +129,12 @@ pub(crate) struct ProfileNames {
 }
 
 impl ProfileNames {
-    /// The file of the finger, if it is read from one.
-    pub(crate) fn finger_file(&self) -> Option<&Path> {
-        file_of::<FingerProfile>(self.finger.as_ref())
-    }
-
-    /// The file of the screen, if it is read from one.
-    pub(crate) fn screen_file(&self) -> Option<&Path> {
-        file_of::<Screen>(self.screen.as_ref())
-    }
-
     /// Reads a scene file like [`load_with_files`], with this finger and screen. Also returns their files.
     pub(crate) fn load_with_files(&self, path: &Path) -> (Result<Scene, SceneFileError>, SceneFiles) {
         let (scene, mut files) = load_with_files(path);
-        for file in [self.finger_file(), self.screen_file()].into_iter().flatten() {
-            files.add(file);
-        }
+        let (finger, screen) =
+            (file_of::<FingerProfile>(self.finger.as_ref()), file_of::<Screen>(self.screen.as_ref()));
+        finger.into_iter().chain(screen).for_each(|file| files.add(file));
         (scene.and_then(|scene| self.applied_to(scene)), files)
     }
 
@@ -192,16 +164,25 @@ pub(crate) fn file_of<P: Profile>(name: Option<&String>) -> Option<&Path> {
 
 /// The bundled profile of a name, or the profile in the file of that name.
 pub(crate) fn profile<P: Profile>(name: &str) -> Result<P, SceneFileError> {
-    if let Some(profile) = P::bundled(name) {
-        return Ok(profile);
-    }
+    P::bundled(name).map_or_else(|| Ok(P::parse(text_of::<P>(name)?, name)?), Ok)
+}
+
+/// The name of a bundled profile, or the text of the file of that name.
+pub(crate) fn named<P: Profile>(name: &str) -> Result<NamedProfile, SceneFileError> {
+    let text = P::bundled(name).map_or_else(|| text_of::<P>(name).map(Some), |_| Ok(None))?;
+    Ok(NamedProfile { name: name.to_owned(), text })
+}
+
+/// The text of the file of a profile.
+fn text_of<P: Profile>(name: &str) -> Result<String, SceneFileError> {
     let unreadable = |source| SceneFileError::UnreadableProfile {
         what: P::KIND.word(),
         file: name.to_owned(),
         nearest: Nearest::new(name, P::bundled_names()),
         source,
     };
-    Ok(P::parse(input::read_toml(Path::new(name)).map_err(unreadable)?, name)?)
+    let bytes = input::read_toml(Path::new(name)).map_err(unreadable)?;
+    Ok(P::KIND.text(&bytes, name)?.to_owned())
 }
 
 #[cfg(test)]

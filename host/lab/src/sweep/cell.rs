@@ -132,14 +132,11 @@ pub enum CellError {
 }
 
 impl Cell {
-    /// Name in messages: its scene, and the values that the plan sets.
-    pub fn title(&self) -> String {
-        self.titled(|_| true)
-    }
-
-    /// The same with the values of these parameters.
-    pub(super) fn titled(&self, has: impl Fn(&str) -> bool) -> String {
-        let values = self.parameters.iter().filter(|(path, _)| has(path));
+    /// Subject of an error: the scene, with the value of the parameter to blame, if one is, or else with all values
+    /// that the plan sets.
+    pub fn subject(&self, error: &CellError) -> String {
+        let blamed = self.blamed(error);
+        let values = self.parameters.iter().filter(|(path, _)| blamed.is_none_or(|blamed| *path == blamed));
         let values: Vec<String> = values.map(|(path, value)| format!("{path} = {value}")).collect();
         let with = if values.is_empty() { String::new() } else { format!(" with {}", values.join(", ")) };
         format!("{}{with}", self.scene)

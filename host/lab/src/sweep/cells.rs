@@ -98,12 +98,10 @@ impl Sweep {
         &self.index
     }
 
-    /// Subject of a cell's error: the plan's line of the parameter at fault, if any, then scene and values.
+    /// Subject of a cell's error, after the plan's line of the parameter at fault, if any.
     pub fn blame(&self, cell: &Cell, error: &CellError) -> String {
-        match cell.blamed(error) {
-            Some(path) => format!("{}: {}", self.places.of_parameter(path), cell.titled(|other| other == path)),
-            None => cell.title(),
-        }
+        let place = cell.blamed(error).map_or(String::new(), |path| self.places.of_parameter(path) + ": ");
+        place + &cell.subject(error)
     }
 
     /// The numbers of a few cells that have each scene, screen and touch source, each value of a list, and both ends of

@@ -8,6 +8,8 @@
 
 mod cell;
 mod cells;
+#[cfg(not(target_arch = "wasm32"))]
+mod files;
 mod parameter;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
@@ -21,6 +23,8 @@ use serde::Serialize;
 
 pub use cell::{Cell, CellError, CellResult, LayerResult};
 pub use cells::{Index, Source, Sweep};
+#[cfg(not(target_arch = "wasm32"))]
+pub use files::PlanFileError;
 pub use parameter::Value;
 pub use plan::{Plan, PlanError, Range, Values};
 pub use result_file::CellResultError;
