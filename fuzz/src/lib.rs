@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink, Upload, ignore_progress};
+use frixel_driver::{DeviceError, Upload, ignore_progress};
 use frixel_felt::recorder::FeltRow;
 use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
 use frixel_lab::input::SceneFolder;
@@ -21,7 +21,7 @@ use frixel_lab::recording::{Metadata, Recording};
 use frixel_lab::sweep::{Plan, Source, Sweep};
 use frixel_layers::Scene as WireScene;
 use frixel_layers::cost::worst_of_scene;
-use frixel_play::{RigStream, TO_THE_END, board_costs};
+use frixel_play::{TO_THE_END, board_costs, connect};
 use frixel_scene::{Scenario, Scene, compile};
 use frixel_testkit::scene_with_points;
 use sha2::{Digest, Sha256};
@@ -216,7 +216,7 @@ pub fn scene_load(bytes: &[u8]) -> bool {
     let mut memory = BoardMemory::new();
     let stroke = Stroke::sweep(0.12, 0.08, 1.0).expect("a stroke");
     let rig = Rig::new(&mut memory, &rig_config, stroke, 1).expect("a rig");
-    let mut device = Device::connect(PollingLink::new(RigStream::new(rig))).expect("a board");
+    let mut device = connect(Box::new(rig)).expect("a board");
     let upload = Upload { scene: bytes, bitmaps: Vec::new() };
     let taken = device.upload(&upload, &mut ignore_progress).and_then(|()| device.commit(upload.scene_crc32()));
     match taken {

@@ -29,11 +29,10 @@ mod stages {
     use std::time::Duration;
 
     use frixel_control::Drive;
-    use frixel_driver::{Device, PollingLink, ignore_progress};
+    use frixel_driver::ignore_progress;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke, World, WorldOptions};
     use frixel_lab::simulate::default_stroke;
-    use frixel_play::Player;
-    use frixel_play::{RigStream, Simulation, TO_THE_END, simulate};
+    use frixel_play::{Player, Simulation, TO_THE_END, connect, simulate};
     use frixel_scene::{Program, compile};
     use frixel_wire::dac_code::DacCode;
     use rustix::time::{ClockId, clock_gettime};
@@ -136,8 +135,7 @@ mod stages {
         fn board(&self) -> Outcome<()> {
             let mut memory = BoardMemory::new();
             let rig = Rig::new(&mut memory, &self.rig, self.stroke.clone(), SEED)?;
-            let link = PollingLink::new(RigStream::new(rig));
-            let mut player = Player::new(Device::connect(link)?);
+            let mut player = Player::new(connect(Box::new(rig))?);
             player.start(self.program.clone(), 0, &mut ignore_progress)?;
             player.wait(Duration::from_secs_f64(self.seconds))?;
             player.stop()?;
@@ -146,8 +144,8 @@ mod stages {
 
         fn recorded(&self) -> Outcome<()> {
             let ticks_per_row = self.rig.board.tick_hz / 1000;
-            let (rig, stroke, seconds) = (self.rig, self.stroke.clone(), self.seconds);
-            let simulation = Simulation { rig, stroke, seconds, seed: SEED, ticks_per_row, through_finger: true };
+            let simulation = Simulation::of_stroke(self.rig, self.stroke.clone(), SEED);
+            let simulation = Simulation { seconds: self.seconds, ticks_per_row, ..simulation };
             black_box(simulate(&self.program, &simulation, None, TO_THE_END)?);
             Ok(())
         }

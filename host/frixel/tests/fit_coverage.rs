@@ -70,7 +70,7 @@ fn steady(person: &Person, load_n: f64) -> (f64, f64) {
         }
     };
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, ticks, 40).unwrap();
-    let line = RigStream::new(rig).observed(observe);
+    let line = RigStream::new(Box::new(rig)).observed(observe);
     let mut player = Player::recording(Device::connect(PollingLink::new(line)).unwrap(), recorder);
     player.start(program, 0, &mut ignore_progress).unwrap();
     while player.recorder_mut().ticks_left() > 0 {

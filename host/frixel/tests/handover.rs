@@ -34,7 +34,7 @@ fn program(config: &RigConfig) -> Program {
 
 /// The board's serial line, which one client after the other opens.
 #[derive(Clone)]
-struct Line<'a>(Rc<RefCell<RigStream<'a, Rig<'a>>>>);
+struct Line<'a>(Rc<RefCell<RigStream<'a>>>);
 
 impl Line<'_> {
     /// Lets time pass without a client.
@@ -97,7 +97,7 @@ fn a_client_killed_at_any_byte_leaves_the_output_at_zero_and_the_next_one_welcom
     let rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 60.0).unwrap(), 1).unwrap();
     let driven_at_tick = Rc::new(Cell::new(0));
     let seen = Rc::clone(&driven_at_tick);
-    let stream = RigStream::new(rig).observed(move |record| {
+    let stream = RigStream::new(Box::new(rig)).observed(move |record| {
         if record.drive.amplifier_enable {
             seen.set(record.tick);
         }

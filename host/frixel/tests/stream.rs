@@ -86,7 +86,7 @@ fn play(pause_ms: std::ops::Range<u64>) -> (Vec<FeltRow>, StreamStatus) {
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
     let recorder = Recorder::new(&program, &config.board.limits, config.board.tick_hz, 80_000, 1).unwrap();
-    let mut stream = RigStream::new(rig);
+    let mut stream = RigStream::new(Box::new(rig));
     *stream.recorder_mut() = recorder;
     let mut device = Device::connect(PollingLink::new(stream)).unwrap();
     frixel_play::start(&mut device, &program, &mut ignore_progress).unwrap();

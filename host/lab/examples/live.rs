@@ -11,11 +11,10 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Duration;
 
-use frixel_driver::{Device, PollingLink, ignore_progress};
+use frixel_driver::ignore_progress;
 use frixel_felt::recorder::Recorder;
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
-use frixel_play::Player;
-use frixel_play::RigStream;
+use frixel_play::{Player, connect};
 use frixel_scene::{Scene, compile};
 
 const SCENE: &str = r#"
@@ -45,8 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let recorder = Recorder::new(&program, limits, tick_hz, ticks, tick_hz / 1000)?;
 
     let mut memory = BoardMemory::new();
-    let stream = RigStream::new(Rig::new(&mut memory, &rig, stroke, 1)?);
-    let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
+    let rig = Rig::new(&mut memory, &rig, stroke, 1)?;
+    let mut player = Player::recording(connect(Box::new(rig))?, recorder);
     player.start(program, 0, &mut ignore_progress)?;
     player.wait(Duration::from_millis(200))?;
     player.change_layer("button", Some(true), None)?;

@@ -35,9 +35,8 @@ fn play() -> Result<(), Box<dyn Error>> {
     let rig = RigConfig::default().with(&WorldOptions::default());
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let stroke = default_stroke(&program, None)?;
-    let seconds = stroke.duration_s();
     let ticks_per_row = rig.board.tick_hz / 1000;
-    let simulation = Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, through_finger: true };
+    let simulation = Simulation { ticks_per_row, ..Simulation::of_stroke(rig, stroke, 1) };
     let played = simulate(&program, &simulation, None, TO_THE_END)?;
 
     let rows = played.recorder.rows();

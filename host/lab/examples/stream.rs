@@ -37,7 +37,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = Scene::parse(SCENE, "stream.toml", &BTreeMap::<String, Vec<u8>>::new())?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
     let stroke = Stroke::constant_speed(Point { x_m: 0.01, y_m: 0.04 }, Point { x_m: 0.11, y_m: 0.04 }, 0.1)?;
-    let (seconds, ticks_per_row) = (stroke.duration_s(), rig.board.tick_hz / 1000);
 
     let given = Rc::new(Cell::new(0));
     let count = Rc::clone(&given);
@@ -48,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         Ok(count.get() < SAMPLES)
     });
-    let simulation = Simulation { rig, stroke, seconds, seed: 1, ticks_per_row, through_finger: false };
+    let simulation = Simulation::of_stroke(rig, stroke, 1);
     let played = simulate(&program, &simulation, Some(feed), TO_THE_END)?;
 
     let status = played.stream.ok_or("nothing was streamed")?;

@@ -29,14 +29,13 @@ fn places() -> Vec<(f64, Option<Point>)> {
     (0..=(SECONDS / PERIOD_S) as u32).map(place).collect()
 }
 
-/// Root mean square of felt minus wanted friction under the finger with this touch source, mN.
+/// Root mean square of felt minus reference friction under the finger with this touch source, mN.
 fn error_mn(touch: TouchConfig) -> Result<f64, Box<dyn Error>> {
     let mut rig = RigConfig::default();
     rig.world.touch = touch;
     let scene = Scene::parse(SCENE, "grating.toml", &BTreeMap::<String, Vec<u8>>::new())?;
     let program = compile(&scene, &rig.board.limits, rig.board.tick_hz)?;
-    let (stroke, ticks_per_row) = (Stroke::through(&places())?, rig.board.tick_hz / 1000);
-    let simulation = Simulation { rig, stroke, seconds: SECONDS, seed: 1, ticks_per_row, through_finger: false };
+    let simulation = Simulation::of_stroke(rig, Stroke::through(&places())?, 1);
     let error = simulate(&program, &simulation, None, TO_THE_END)?.recorder.summary().friction_error;
     Ok(1e3 * error.ok_or("the finger was never down")?.rms_n)
 }

@@ -1,12 +1,12 @@
 //! Costs of a program on the simulated board, and the judgement of its layers.
 
-use frixel_driver::{Device, PollingLink, ignore_progress};
+use frixel_driver::ignore_progress;
 use frixel_felt::check::BoardCosts;
 use frixel_felt::judge::{self, Advice, Judgement};
 use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke, WorldOptions};
 use frixel_scene::Program;
 
-use crate::{GoesOn, RigStream, Simulation, SimulationError, load, simulate};
+use crate::{GoesOn, Simulation, SimulationError, connect, load, simulate};
 
 /// Random seed of the world, for every element and size.
 const SEED: u64 = 1;
@@ -35,8 +35,7 @@ pub fn board_costs(program: &Program, rig: &RigConfig) -> Result<BoardCosts, Sim
     let mut memory = BoardMemory::new();
     // The stroke never starts.
     let stroke = Stroke::still(Point { x_m: 0.0, y_m: 0.0 }, 1.0)?;
-    let stream = RigStream::new(Rig::new(&mut memory, rig, stroke, SEED)?);
-    let mut device = Device::connect(PollingLink::new(stream))?;
+    let mut device = connect(Box::new(Rig::new(&mut memory, rig, stroke, SEED)?))?;
     let wire_bytes = load(&mut device, program, &mut ignore_progress).map_err(SimulationError::Refused)?;
     Ok(BoardCosts::of(program, rig, wire_bytes))
 }

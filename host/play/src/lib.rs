@@ -8,7 +8,7 @@
 //! - [`Control`]: carries out lines of text that change its layers and the program.
 //! - [`LiveLayers`]: the settings of the layers while they play.
 //! - [`Feed`]: the samples of a stream, sent as fast as the board plays them.
-//! - [`RigStream`]: the line to a board in a simulated world, on its clock.
+//! - [`connect`]: connects to a board in a simulated world by a [`RigStream`], a line on its clock.
 //! - [`simulate`]: plays a program on the simulated board of this process under a simulated finger, in virtual time.
 //! - [`judge`]: judges a program by simulated strokes.
 //! - [`board_costs`]: memory, table and line bytes that a board needs for a program.
@@ -40,6 +40,6 @@ pub use live_layers::{LayerChange, LiveError, LiveLayers};
 pub use observed::Observed;
 pub use player::{Player, Replaced, check_measured};
 pub use recorded::Recorded;
-pub use rig_stream::{RigStream, ticks_spanning};
+pub use rig_stream::{RigLink, RigStream, connect, ticks_spanning};
 pub use simulation::{SimPlayer, Simulated, Simulation, SimulationError, simulate, simulate_by};
 pub use upload::{load, start};

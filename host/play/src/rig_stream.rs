@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use frixel_driver::{ByteStream, LinkClosed};
+use frixel_driver::{ByteStream, Device, DeviceError, LinkClosed, PollingLink};
 use frixel_felt::recorder::{Observation, Recorder};
 use frixel_hil_sim::{BoardRig, BoardView, RigError, RigTick};
 use frixel_wire::fault::State;
@@ -22,8 +22,8 @@ type Observer<'a> = Box<dyn FnMut(&RigTick) + 'a>;
 /// Stroke and record start when the scene first plays: in that tick if the rig [sees the board](BoardRig::sees_board),
 /// and otherwise when the board acknowledges `play`. On a rig that does not see the board, only rows with a telemetry
 /// message have the board's values.
-pub struct RigStream<'a, R> {
-    rig: R,
+pub struct RigStream<'a> {
+    rig: Box<dyn BoardRig + 'a>,
     record: Record<'a>,
     /// Bytes from the board that were received beside a read.
     received: Vec<u8>,
@@ -46,9 +46,17 @@ struct Record<'a> {
     tick_offset: Option<u32>,
 }
 
-impl<'a, R: BoardRig> RigStream<'a, R> {
+/// A link to a board in a simulated world.
+pub type RigLink<'a> = PollingLink<RigStream<'a>>;
+
+/// Connects to the board of a rig.
+pub fn connect(rig: Box<dyn BoardRig + '_>) -> Result<Device<RigLink<'_>>, DeviceError> {
+    Device::connect(PollingLink::new(RigStream::new(rig)))
+}
+
+impl<'a> RigStream<'a> {
     /// The line to a rig.
-    pub fn new(rig: R) -> Self {
+    pub fn new(rig: Box<dyn BoardRig + 'a>) -> Self {
         Self { rig, record: Record::default(), received: Vec::new() }
     }
 
@@ -145,7 +153,7 @@ impl Record<'_> {
     }
 }
 
-impl<R: BoardRig> Recorded for RigStream<'_, R> {
+impl Recorded for RigStream<'_> {
     type Recorder = Recorder;
 
     fn recorder_mut(&mut self) -> &mut Recorder {
@@ -183,7 +191,7 @@ impl<R: BoardRig> Recorded for RigStream<'_, R> {
     }
 }
 
-impl<R: BoardRig> ByteStream for RigStream<'_, R> {
+impl ByteStream for RigStream<'_> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), LinkClosed> {
         self.rig.send(bytes).map_err(|error| self.closed(&error))
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Counters, Device, DeviceError, PollingLink, StreamStatus, ignore_progress};
+use frixel_driver::{Counters, DeviceError, StreamStatus, ignore_progress};
 use frixel_felt::GoesOn;
 use frixel_felt::fidelity::{FidelitySample, ticks_per_sample};
 use frixel_felt::recorder::Recorder;
@@ -11,7 +11,7 @@ use frixel_scene::Program;
 use frixel_wire::hello::Hello;
 use thiserror::Error;
 
-use crate::{Feed, PlayError, Player, RigStream};
+use crate::{Feed, PlayError, Player, RigLink, connect};
 
 /// Settings of a play on the simulator.
 #[derive(Clone, Debug)]
@@ -26,12 +26,10 @@ pub struct Simulation {
     pub seed: u64,
     /// Ticks between two rows of the record.
     pub ticks_per_row: u32,
-    /// Whether the reference goes through the simulated finger.
-    pub through_finger: bool,
 }
 
 /// A simulated board on which a program plays.
-pub type SimPlayer<'a> = Player<PollingLink<RigStream<'a, Rig<'a>>>>;
+pub type SimPlayer<'a> = Player<RigLink<'a>>;
 
 /// Results of a simulation.
 pub struct Simulated {
@@ -72,11 +70,11 @@ impl From<DeviceError> for SimulationError {
 }
 
 impl Simulation {
-    /// Simulates one complete stroke, with a row for each [`FidelitySample`]. The reference goes through the finger.
+    /// Simulates one complete stroke, with a row for each [`FidelitySample`].
     pub fn of_stroke(rig: RigConfig, stroke: Stroke, seed: u64) -> Self {
         let seconds = stroke.duration_s();
         let ticks_per_row = ticks_per_sample(rig.board.tick_hz);
-        Self { rig, stroke, seconds, seed, ticks_per_row, through_finger: true }
+        Self { rig, stroke, seconds, seed, ticks_per_row }
     }
 
     /// The world of a board in another process, with a finger of its own, or else the one that `program` is for.
@@ -87,12 +85,11 @@ impl Simulation {
         Ok(world)
     }
 
-    /// The recorder of a play of `program`, until the last tick.
+    /// The recorder of a play of `program`, until the last tick. The reference goes through the simulated finger.
     pub fn recorder(&self, program: &Program) -> Result<Recorder, PlayError> {
         let board = &self.rig.board;
         let ticks = (self.seconds * f64::from(board.tick_hz)).round() as u64;
-        let recorder = Recorder::new(program, &board.limits, board.tick_hz, ticks, self.ticks_per_row)?;
-        Ok(if self.through_finger { recorder.through_finger() } else { recorder })
+        Ok(Recorder::new(program, &board.limits, board.tick_hz, ticks, self.ticks_per_row)?.through_finger())
     }
 
     /// The board after power-on, in its world.
@@ -130,8 +127,7 @@ pub fn simulate_by(
 ) -> Result<Simulated, SimulationError> {
     let recorder = simulation.recorder(program)?;
     let mut memory = BoardMemory::new();
-    let stream = RigStream::new(simulation.rig(&mut memory)?);
-    let mut player = Player::recording(Device::connect(PollingLink::new(stream))?, recorder);
+    let mut player = Player::recording(connect(Box::new(simulation.rig(&mut memory)?))?, recorder);
     player.start(program.clone(), 0, &mut ignore_progress)?;
     if let Some(feed) = feed {
         player.stream(feed)?;
@@ -174,7 +170,7 @@ mod tests {
         let mut rig = Rig::new(&mut memory, &config, Stroke::sweep(0.12, 0.11, 1.0).unwrap(), 1).unwrap();
         rig.world_mut().schedule_fault(20_000..u64::MAX, WorldFault::AmplifierNotReady).unwrap();
         let recorder = Recorder::new(&program, &board.limits, board.tick_hz, 400_000, 40).unwrap();
-        let mut player = Player::recording(Device::connect(PollingLink::new(RigStream::new(rig))).unwrap(), recorder);
+        let mut player = Player::recording(connect(Box::new(rig)).unwrap(), recorder);
         player.start(program, 0, &mut ignore_progress).unwrap();
         let error = (0..100).find_map(|_| player.step(Duration::MAX).err()).unwrap();
         assert!(matches!(error, PlayError::Stopped(StopReason::Fault(Fault::Amplifier))), "{error}");

@@ -14,14 +14,10 @@ pub(crate) struct ProfileText {
 }
 
 impl ProfileText {
-    /// The name of a bundled profile.
-    pub(crate) fn bundled_name(&self) -> Option<&str> {
-        if self.text.is_none() { Some(&self.name) } else { None }
-    }
-
-    /// The text of its file; `None` for a bundled profile.
-    pub(crate) fn text(&self) -> Option<&str> {
-        self.text.as_deref()
+    /// Its name, or the text of its file.
+    pub(crate) fn named(&self) -> NamedProfile {
+        let Self { text, name } = self.clone();
+        NamedProfile { name, text }
     }
 
     /// Its name in messages.
@@ -31,8 +27,7 @@ impl ProfileText {
 
     /// The profile.
     pub(crate) fn read<P: Profile>(&self, py: Python<'_>) -> PyResult<P> {
-        let Self { text, name } = self.clone();
-        NamedProfile { name, text }.read().map_err(|error| match error {
+        self.named().read().map_err(|error| match error {
             ProfileError::Mistakes(error) => scene_error(py, &error),
             error @ ProfileError::NotBundled { .. } => parameter_error(py, error),
         })

@@ -1,10 +1,8 @@
 //! Plays on the simulated board, in virtual time.
 
-use std::collections::BTreeMap;
-
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
 use frixel_lab::GeneratedStroke;
-use frixel_lab::recording::{Metadata, SourceFile, play_fields, play_values};
+use frixel_lab::recording::{Metadata, PlaySource, play_fields, play_values};
 use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions, screen_m};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
 use frixel_play::{Simulated, Simulation};
@@ -114,8 +112,8 @@ pub(crate) struct Settings<'py> {
 struct Play<'s> {
     program: &'s Program,
     options: PlayOptions,
-    /// Texts of finger, screen, touch source and stroke.
-    files: BTreeMap<String, String>,
+    /// Finger, screen, touch source and stroke.
+    source: PlaySource,
     simulation: Simulation,
 }
 
@@ -126,19 +124,26 @@ impl Settings<'_> {
         let stroke = self.stroke.as_ref().map(Stroke::of_rows).transpose();
         let stroke = stroke.map_err(|error| parameter_error(py, error))?.flatten();
         let touch = self.touch.as_ref().map(|touch| touch.read(py)).transpose()?;
-        let options = self.options(scene, seconds);
+        let options = self.options(seconds);
         let simulation = options.simulation(scene.parsed(), program, (stroke, touch), &RigConfig::default());
         let simulation = simulation.map_err(|error| match error {
             PlayOptionsError::Screen(error) => scene_error(py, &error),
             error @ PlayOptionsError::RowRate { .. } => parameter_error(py, format!("rows_per_s: {error}")),
             error => parameter_error(py, error),
         })?;
-        Ok(Play { program, options, files: self.files(scene), simulation })
+        let profile = |profile: Option<&ProfileText>| profile.map(ProfileText::named);
+        let source = PlaySource {
+            finger: profile(scene.own_finger()),
+            screen: profile(scene.own_screen()),
+            touch: profile(self.touch.as_ref()),
+            stroke: self.stroke.as_ref().and_then(Stroke::csv).map(String::into_bytes),
+            ..PlaySource::default()
+        };
+        Ok(Play { program, options, source, simulation })
     }
 
-    /// The options as a recording stores them, for `frixel replay`.
-    fn options(&self, scene: &Scene, seconds: Option<f64>) -> PlayOptions {
-        let name = |profile: &ProfileText| profile.bundled_name().unwrap_or(PlayOptions::FILE).to_owned();
+    /// The options as a recording stores them, without the names of profiles.
+    fn options(&self, seconds: Option<f64>) -> PlayOptions {
         PlayOptions {
             seconds,
             seed: self.seed,
@@ -147,9 +152,9 @@ impl Settings<'_> {
             mean_square: self.mean_square,
             finger_seed: self.person,
             rows_hz: self.rows_per_s,
-            finger: scene.own_finger().map(name),
-            screen: scene.own_screen().map(name),
-            touch: self.touch.as_ref().map(name),
+            finger: None,
+            screen: None,
+            touch: None,
             stroke: self.stroke.as_ref().map(Stroke::options).unwrap_or_default(),
             control: false,
             stream: false,
@@ -157,18 +162,6 @@ impl Settings<'_> {
             stream_s: None,
             interrupted: false,
         }
-    }
-
-    /// Contents of the files of the options, by option: [`PlayOptions::FINGER`] and the others.
-    fn files(&self, scene: &Scene) -> BTreeMap<String, String> {
-        let text = |profile: Option<&ProfileText>| profile.and_then(ProfileText::text).map(str::to_owned);
-        let texts = [
-            (PlayOptions::FINGER, text(scene.own_finger())),
-            (PlayOptions::SCREEN, text(scene.own_screen())),
-            (PlayOptions::TOUCH, text(self.touch.as_ref())),
-            (PlayOptions::STROKE, self.stroke.as_ref().and_then(Stroke::csv)),
-        ];
-        texts.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text?))).collect()
     }
 }
 
@@ -180,16 +173,13 @@ pub(crate) fn simulate<'py>(
     settings: Settings<'py>,
     seconds: Option<f64>,
 ) -> PyResult<(Bound<'py, PyDict>, String)> {
-    let Play { program, options, files, simulation } = settings.play(py, scene, seconds)?;
+    let Play { program, options, source, simulation } = settings.play(py, scene, seconds)?;
     let played = interruptible(py, |goes_on| frixel_play::simulate(program, &simulation, None, goes_on))?;
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (error.to_string(),));
     let Simulated { recorder, board, .. } = played.map_err(|error| failed(&error))?;
-    let metadata = Metadata {
-        ticks_per_row: simulation.ticks_per_row,
-        play: serde_json::to_value(&options).map_err(|error| failed(&error))?,
-        ..Metadata::new("sim", Some(&board), true, None)
-    };
-    let files = SourceFile::all(files.iter().map(|(name, text)| (name.clone(), text.as_bytes())));
+    let of_board = Metadata::new("sim", Some(&board), true, None);
+    let metadata = source.recorded(options, Metadata { ticks_per_row: simulation.ticks_per_row, ..of_board });
+    let files = metadata.files.clone();
     let made = Made { metadata, files, later_scenes: Vec::new(), markers: recorder.markers().to_vec() };
     let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
     Ok((columns(py, &play_fields(), play_values(recorder.rows()))?, made))

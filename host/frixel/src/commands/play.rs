@@ -4,15 +4,12 @@
 //! and `Outputs` writes the files. This module prints the results.
 
 mod control;
-#[cfg(unix)]
-mod emulator;
 mod follow;
 mod live_scene;
 mod outputs;
 mod plan;
 mod progress;
 mod record_file;
-mod recorded;
 pub(super) mod replay;
 mod rigs;
 mod stream_args;
@@ -131,9 +128,8 @@ impl PlayArgs {
         Ok(Self::from_arg_matches(&command.try_get_matches_from(typed)?)?)
     }
 
-    /// The options as a recording stores them, without the names of finger and screen.
+    /// The options as a recording stores them, without the names of profiles.
     fn options(&self, stream_s: Option<f64>) -> PlayOptions {
-        let touch = self.touch.bundled_name().or(self.touch.file().map(|_| PlayOptions::FILE));
         PlayOptions {
             seconds: self.seconds,
             seed: self.seed,
@@ -144,7 +140,7 @@ impl PlayArgs {
             rows_hz: self.csv_hz,
             finger: None,
             screen: None,
-            touch: touch.map(str::to_owned),
+            touch: None,
             stroke: self.stroke.options(),
             control: self.control,
             stream: self.stream.is_given(),
@@ -202,9 +198,8 @@ pub(super) fn run(args: &PlayArgs) -> Result<()> {
     let scene = scene?;
     let live_scene = (args.watch || args.control).then(|| LiveScene::new(args, target, files, outputs.clone()));
     let played = match target {
-        Target::Sim => rigs::play_on_simulator(args, &scene, (outputs, live_scene), &interrupt),
-        Target::Qemu | Target::Pico => rigs::play_on_emulator(args, &scene, target, (outputs, live_scene), &interrupt),
         Target::Port => rigs::play_on_port(args, &scene, (outputs, live_scene), &interrupt),
+        rig => rigs::play_on_rig(args, &scene, rig, (outputs, live_scene), &interrupt),
     }?;
     finish(args, played)
 }

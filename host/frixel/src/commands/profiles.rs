@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::scene_file::{ProfileNames, SceneFileError, file_of, profile};
+use crate::scene_file::{ProfileNames, SceneFileError, file_of, named, profile};
 use anyhow::Result;
 use clap::Args;
 use frixel_hil_sim::{TouchConfig, WorldOptions};
-use frixel_scene::Screen;
+use frixel_scene::{NamedProfile, Screen};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ProfileArgs {
@@ -32,9 +32,9 @@ pub(super) struct TouchArgs {
 }
 
 impl TouchArgs {
-    /// The name of the source, if it is bundled.
-    pub(super) fn bundled_name(&self) -> Option<&str> {
-        self.touch.as_deref().filter(|name| TouchConfig::bundled(name).is_some())
+    /// The name of the source, or the text of its file.
+    pub(super) fn named(&self) -> Result<Option<NamedProfile>, SceneFileError> {
+        self.touch.as_deref().map(named::<TouchConfig>).transpose()
     }
 
     pub(super) fn is_given(&self) -> bool {

@@ -4,17 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Result, bail};
-#[cfg(unix)]
-use frixel_hil_sim::emulated::{BOARD, EmulatedBoard, Image, LinkBoard, PicoBoardRig};
-use frixel_hil_sim::{Board, RigConfig};
+use frixel_hil_sim::{BoardRig, RigConfig};
 use frixel_lab::scenario::{self, Programs, ScenarioOutcome, run_in_process};
 use frixel_lab::simulate::screen_m;
 use frixel_scene::{Scenario, Scene};
 
 use super::error::{at, reading};
 use crate::input;
-#[cfg(unix)]
-use crate::rigs::EmulatedRig;
 use crate::scene_file::load;
 
 use super::stroke::note_off_screen;
@@ -32,15 +28,16 @@ pub(super) fn run(file: &Path, expect: bool, rig: Target) -> Result<()> {
         );
     }
     let scenes = scenes(&scenario, file)?;
-    let outcome = match rig {
-        Target::Sim => {
-            let config = RigConfig::default();
-            run_in_process(&scenario, &programs(&scenario, &scenes, &config.board)?, &config)?
+    let config = rig.rig();
+    let programs = programs(&scenario, &scenes, &config)?;
+    let outcome = match (rig, programs.get(&scenario.scene)) {
+        (Target::Qemu | Target::Pico, Some(program)) => {
+            let simulation = scenario::simulation(&scenario, &programs, &config)?;
+            let run = |mut rig: Box<dyn BoardRig + '_>| Ok(scenario::run(&scenario, &programs, &mut *rig)?);
+            let (outcome, ended) = rig.on_rig(&simulation, program, run)?;
+            ended.map(|()| outcome)?
         }
-        #[cfg(unix)]
-        rig => run_emulated(&scenario, &scenes, rig)?,
-        #[cfg(not(unix))]
-        rig => return Err(super::error::no_pseudo_terminal(&format!("--rig {}", rig.name()))),
+        _ => run_in_process(&scenario, &programs, &config)?,
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);
@@ -54,27 +51,11 @@ pub(super) fn run(file: &Path, expect: bool, rig: Target) -> Result<()> {
     Ok(())
 }
 
-/// Runs a scenario on the board of `rig` in an emulator.
-#[cfg(unix)]
-fn run_emulated(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, rig: Target) -> Result<ScenarioOutcome> {
-    let board = if rig == Target::Pico { Board::PICO } else { BOARD };
-    let programs = programs(scenario, scenes, &board)?;
-    let world = scenario::world(scenario, &programs, &board)?;
-    if rig == Target::Pico {
-        let mut rig = PicoBoardRig::start(&Image::find(EmulatedBoard::Pico)?, world)?;
-        return Ok(scenario::run(scenario, &programs, &mut rig)?);
-    }
-    let mut board = LinkBoard::start(&Image::find(EmulatedBoard::Mps2An386)?, world)?;
-    let outcome = scenario::run(scenario, &programs, &mut EmulatedRig::open(&board)?)?;
-    board.check()?;
-    Ok(outcome)
-}
-
 /// The programs of a scenario for a board. Prints a note if the stroke leaves the screen.
-fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, board: &Board) -> Result<Programs> {
-    let programs = scenario::programs(scenario, scenes, board)?;
+fn programs(scenario: &Scenario, scenes: &BTreeMap<String, Scene>, rig: &RigConfig) -> Result<Programs> {
+    let programs = scenario::programs(scenario, scenes, &rig.board)?;
     if let (Some(_), Some(program)) = (&scenario.stroke, programs.get(&scenario.scene)) {
-        let stroke = scenario::simulation(scenario, &programs, &RigConfig::of(*board))?.stroke;
+        let stroke = scenario::simulation(scenario, &programs, rig)?.stroke;
         let name = format!("{}: the stroke", scenario.file);
         note_off_screen(&name, &stroke, screen_m(program), scenario.seconds).map_err(at(&scenario.file))?;
     }

@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use frixel::rigs::EmulatedRig;
 use frixel::scene_file;
-use frixel_driver::{Device, Link, PollingLink, ignore_progress};
+use frixel_driver::{Device, Link, ignore_progress};
 use frixel_exchange::BOARD;
 use frixel_hil_sim::emulated::{Image, LinkBoard};
 use frixel_hil_sim::{Stroke, World, WorldConfig};
-use frixel_play::{RigStream, start};
+use frixel_play::{connect, start};
 use frixel_scene::{Program, compile};
 
 use crate::processes::bundled;
@@ -55,7 +55,7 @@ impl Bench {
     pub(crate) fn connect(&self) -> Device<impl Link> {
         self.until_still("no byte arrives", |board| board.received_bytes().unwrap());
         let rig = EmulatedRig::open(&self.board).unwrap();
-        Device::connect(PollingLink::new(RigStream::new(rig))).unwrap()
+        connect(Box::new(rig)).unwrap()
     }
 
     /// Plays one of the bundled scenes, and waits until the board drives.

@@ -11,13 +11,15 @@ mod cases;
 mod expected;
 
 use std::path::Path;
+use std::time::Duration;
 
 use cases::{Case, Path as StrokePath};
 use expected::{At, Expected};
-use frixel_felt::recorder::FeltRow;
-use frixel_hil_sim::{Point, RigConfig, Stroke};
+use frixel_driver::ignore_progress;
+use frixel_felt::recorder::{FeltRow, Recorder};
+use frixel_hil_sim::{BoardMemory, Point, Rig, RigConfig, Stroke};
 use frixel_lab::input::SceneFolder;
-use frixel_play::{Simulation, TO_THE_END, simulate};
+use frixel_play::{Player, connect};
 use frixel_scene::{Program, Scene, compile};
 
 use crate::processes::HEAD;
@@ -44,13 +46,19 @@ fn stroke(path: StrokePath) -> Stroke {
     }
 }
 
-/// Every tick of a stroke that a finger makes on a board that plays.
+/// Every tick of a stroke that a finger makes on a board that plays, with the friction of the scene as reference.
 fn play(program: &Program, path: StrokePath) -> Vec<FeltRow> {
-    let stroke = stroke(path);
-    let seconds = stroke.duration_s();
-    let simulation =
-        Simulation { rig: RigConfig::default(), stroke, seconds, seed: 1, ticks_per_row: 1, through_finger: false };
-    simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.rows().to_vec()
+    let (stroke, config) = (stroke(path), RigConfig::default());
+    let ticks = (stroke.duration_s() * f64::from(config.board.tick_hz)).round() as u64;
+    let recorder = Recorder::new(program, &config.board.limits, config.board.tick_hz, ticks, 1).unwrap();
+    let mut memory = BoardMemory::new();
+    let rig = Rig::new(&mut memory, &config, stroke, 1).unwrap();
+    let mut player = Player::recording(connect(Box::new(rig)).unwrap(), recorder);
+    player.start(program.clone(), 0, &mut ignore_progress).unwrap();
+    while player.recorder_mut().ticks_left() > 0 {
+        player.step(Duration::MAX).unwrap();
+    }
+    player.into_recorder().take_rows()
 }
 
 /// Electric friction that the case expects at each row, in mN, when the stroke began so many ticks after power-on.

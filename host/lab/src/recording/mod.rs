@@ -16,6 +16,7 @@ mod parquet_writer;
 mod replay;
 mod replayed_changes;
 mod seal;
+mod source;
 
 use frixel_felt::recorder::FeltRow;
 
@@ -30,6 +31,7 @@ pub use parquet_writer::ParquetWriter;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use parquet_writer::table_parquet;
 pub use replay::ReplayError;
+pub use source::PlaySource;
 
 /// Rows of a recording that [`Recording::write_parquet`] puts into one row group.
 pub const ROWS_PER_GROUP: usize = 65_536;

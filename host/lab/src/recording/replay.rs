@@ -1,23 +1,19 @@
 //! Plays a recording again.
 
-use std::collections::BTreeMap;
-
 use frixel_felt::recorder::MarkedEvent;
-use frixel_hil_sim::{RigConfig, Stroke};
+use frixel_hil_sim::RigConfig;
 use frixel_play::{Feed, GoesOn, SimulationError, simulate_by};
-use frixel_scene::{CompileError, NamedProfile, Profile, ProfileError, Program, Scene, brief, compile_draft};
+use frixel_scene::{CompileError, Program, Scene, brief, compile_draft};
 use thiserror::Error;
 
 use super::replayed_changes::ReplayedChanges;
-use super::{Metadata, Recording, SourceFile};
+use super::source::bytes_of;
+use super::{LaterScene, Metadata, PlaySource, Recording, SourceFile};
 use crate::simulate::{PlayOptions, PlayOptionsError};
-use crate::stroke_file::{StrokeFile, StrokeFileError};
+use crate::stroke_file::StrokeFileError;
 
 /// Name of the scene in messages.
 const SCENE: &str = "the recorded scene";
-
-/// Bytes of files by their names.
-type FileBytes = BTreeMap<String, Vec<u8>>;
 
 /// Why a recording cannot be played again.
 #[derive(Debug, Error)]
@@ -45,13 +41,11 @@ impl Recording {
     /// play; when it breaks, the result ends there.
     pub fn replay(&self, goes_on: GoesOn<'_>) -> Result<Self, ReplayError> {
         let options = options(&self.metadata)?;
-        let files = files(&self.metadata.files)?;
-        let scene = scene(&self.metadata.scene, &of_scene(&files), &options, &files)?;
+        let source = PlaySource::of(&self.metadata, &options)?;
+        let scene = source.scene(SCENE)?;
         let program = compile(&scene)?;
-        let stroke = stroke(&options, &files)?;
-        let feed = feed(&self.metadata, &options, &files)?;
-        let inputs = (stroke, profile(options.touch.as_ref(), PlayOptions::TOUCH, &files)?);
-        let mut simulation = options.simulation(&scene, &program, inputs, &RigConfig::default())?;
+        let feed = feed(&self.metadata, &options)?;
+        let mut simulation = options.simulation(&scene, &program, source.inputs()?, &RigConfig::default())?;
         let is_short = options.interrupted || self.is_cut_off;
         let stopped_at_tick = stopped_at_tick(&self.metadata).filter(|_| is_short);
         let tick_hz = simulation.rig.board.tick_hz;
@@ -59,7 +53,7 @@ impl Recording {
         let rows = self.rows() + usize::from(!is_short || stopped_at_tick.is_some());
         let rows_s = rows as f64 * f64::from(simulation.ticks_per_row) / f64::from(tick_hz);
         simulation.seconds = simulation.seconds.min(rows_s);
-        let later = later_programs(&self.metadata, &options, &files)?;
+        let later = later_programs(&self.metadata, &source)?;
         let mut changes = ReplayedChanges::new(options.lines, later, stopped_at_tick, tick_hz);
         let played = simulate_by(&program, &simulation, feed, &mut |player| changes.play(player, goes_on));
         Ok(Self::of_rows(self.metadata.clone(), &played?.recorder.take_rows()))
@@ -98,34 +92,13 @@ fn stopped_at_tick(metadata: &Metadata) -> Option<u64> {
     stopped.map(|stopped| stopped.ticks)
 }
 
-/// The bytes of files that are kept in the recording.
-fn files(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes, ReplayError> {
-    let bytes = |(name, file): (&String, &SourceFile)| match (file.bytes(), file) {
-        (Some(bytes), _) => Ok((name.clone(), bytes)),
-        (None, SourceFile::Hash { .. }) => {
-            Err(refused(format!("it holds only the hash of the large file {}", brief(name))))
-        }
-        (None, _) => Err(missing(name)),
-    };
-    files.iter().map(bytes).collect()
-}
-
-/// The files of the first scene, by the names that it gives them.
-fn of_scene(files: &FileBytes) -> FileBytes {
-    let of_scene = |(name, bytes): (&String, &Vec<u8>)| {
-        Some((name.strip_prefix(PlayOptions::OF_SCENE)?.to_owned(), bytes.clone()))
-    };
-    files.iter().filter_map(of_scene).collect()
-}
-
 /// The scenes that were put on the board after the first.
-fn later_programs(
-    metadata: &Metadata,
-    options: &PlayOptions,
-    of_play: &FileBytes,
-) -> Result<Vec<Program>, ReplayError> {
-    let later = metadata.later_scenes.iter();
-    later.map(|later| compile(&scene(&later.scene, &files(&later.files)?, options, of_play)?)).collect()
+fn later_programs(metadata: &Metadata, source: &PlaySource) -> Result<Vec<Program>, ReplayError> {
+    let of = |later: &LaterScene| {
+        let (scene, files) = (later.scene.clone(), bytes_of(&later.files)?);
+        compile(&PlaySource { scene, files, ..source.clone() }.scene(SCENE)?)
+    };
+    metadata.later_scenes.iter().map(of).collect()
 }
 
 fn compile(scene: &Scene) -> Result<Program, ReplayError> {
@@ -135,7 +108,7 @@ fn compile(scene: &Scene) -> Result<Program, ReplayError> {
 
 /// The samples that were streamed, if any were, as fast as the board takes them. Behind the last one comes the end of
 /// the stream, or, if the play ended before it, nothing.
-fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result<Option<Feed>, ReplayError> {
+fn feed(metadata: &Metadata, options: &PlayOptions) -> Result<Option<Feed>, ReplayError> {
     if !options.stream {
         return Ok(None);
     }
@@ -145,7 +118,9 @@ fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result
         _ => None,
     });
     let is_ended = events.any(|event| *event == MarkedEvent::StreamEnded);
-    let (Some(sample_hz), Some(bytes)) = (sample_hz, files.get(PlayOptions::STREAM)) else {
+    let (Some(sample_hz), Some(bytes)) =
+        (sample_hz, metadata.files.get(PlayOptions::STREAM).and_then(SourceFile::bytes))
+    else {
         return Err(refused("samples were streamed into it (--stream), which the recording does not have"));
     };
     let sample = |pair: &[u8]| Some(u16::from_le_bytes(pair.try_into().ok()?));
@@ -157,52 +132,6 @@ fn feed(metadata: &Metadata, options: &PlayOptions, files: &FileBytes) -> Result
     })))
 }
 
-/// A scene of the recording, which names the files `named`, with the finger and the screen that replaced its own.
-fn scene(text: &str, named: &FileBytes, options: &PlayOptions, files: &FileBytes) -> Result<Scene, ReplayError> {
-    let mut scene = Scene::parse(text, SCENE, named)?;
-    if let Some(screen) = profile(options.screen.as_ref(), PlayOptions::SCREEN, files)? {
-        scene = scene.with_screen(screen, PlayOptions::SCREEN);
-    }
-    if let Some(finger) = profile(options.finger.as_ref(), PlayOptions::FINGER, files)? {
-        scene = scene.with_finger(finger, PlayOptions::FINGER);
-    }
-    Ok(scene)
-}
-
-/// The profile of an option, from the file `file` of the recording, or else the bundled one.
-fn profile<P: Profile>(option: Option<&String>, file: &str, files: &FileBytes) -> Result<Option<P>, ReplayError> {
-    let Some(name) = option else { return Ok(None) };
-    let text = files.get(file).map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    let name = match &text {
-        Some(_) => file.to_owned(),
-        None if name == PlayOptions::FILE => return Err(missing(file)),
-        None => name.clone(),
-    };
-    let read = NamedProfile { name, text }.read();
-    read.map(Some).map_err(|error| match error {
-        ProfileError::NotBundled { kind, name, .. } => {
-            refused(format!("this frixel has no {kind} named {}: use the one that recorded it", brief(&name)))
-        }
-        ProfileError::Mistakes(mistakes) => mistakes.into(),
-    })
-}
-
-/// The stroke of a file.
-fn stroke(options: &PlayOptions, files: &FileBytes) -> Result<Option<Stroke>, ReplayError> {
-    if !options.stroke.is_from_file() {
-        return Ok(None);
-    }
-    let bytes = files.get(PlayOptions::STROKE).ok_or_else(|| missing(PlayOptions::STROKE))?;
-    Ok(Some(StrokeFile::read(bytes.as_slice())?.stroke))
-}
-
-fn missing(name: &str) -> ReplayError {
-    let name = brief(name);
-    refused(format!(
-        "it lacks {name}, a file that it was played with, or has a damaged one: use a copy of the recording"
-    ))
-}
-
-fn refused(sentence: impl Into<String>) -> ReplayError {
+pub(super) fn refused(sentence: impl Into<String>) -> ReplayError {
     ReplayError::Refused(sentence.into())
 }

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use frixel_driver::{Device, DeviceError, PollingLink, ignore_progress};
+use frixel_driver::{DeviceError, ignore_progress};
 use frixel_hil_sim::BoardRig as _;
-use frixel_play::{PlayError, Player, RigStream, load};
+use frixel_play::{PlayError, Player, RigLink, connect, load};
 use frixel_scene::{Action, Scenario, ScenarioCommand};
 use frixel_wire::frame::FRAME_MAX_LEN;
 use frixel_wire::payload::hello_request_frame;
@@ -26,7 +26,7 @@ pub(super) struct Failure {
 }
 
 /// A board at the end of the scenario's line.
-type ScenarioPlayer<'r> = Player<PollingLink<RigStream<'r, ScenarioLine<'r>>>>;
+type ScenarioPlayer<'r> = Player<RigLink<'r>>;
 
 pub(super) struct Host<'s, 'r> {
     scenario: &'s Scenario,
@@ -95,8 +95,7 @@ impl<'s, 'r> Host<'s, 'r> {
     }
 
     fn connect(&mut self) -> Result<(), CommandFailure> {
-        let link = PollingLink::new(RigStream::new(self.line.clone()));
-        self.player = Some(Player::new(Device::connect(link)?));
+        self.player = Some(Player::new(connect(Box::new(self.line.clone()))?));
         Ok(())
     }
 

@@ -15,9 +15,7 @@ mod state_history;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
-use frixel_hil_sim::{
-    Board, BoardMemory, BoardRig, Point, RigConfig, RigError, Stroke, StrokeError, World, WorldOptions,
-};
+use frixel_hil_sim::{Board, BoardMemory, BoardRig, Point, RigConfig, RigError, Stroke, StrokeError, WorldOptions};
 use frixel_play::{Simulation, SimulationError, ticks_spanning};
 use frixel_scene::{CompileError, Program, Scenario, Scene, compile, printable};
 use thiserror::Error;
@@ -134,12 +132,6 @@ pub fn simulation(scenario: &Scenario, programs: &Programs, rig: &RigConfig) -> 
     Ok(Simulation { seconds: scenario.seconds, ..simulation })
 }
 
-/// The world of a scenario around a board in another process, with the finger of the first scene.
-pub fn world(scenario: &Scenario, programs: &Programs, board: &Board) -> Result<World, ScenarioError> {
-    let program = first_program(scenario, programs)?;
-    Ok(simulation(scenario, programs, &RigConfig::of(*board))?.world(program)?)
-}
-
 fn first_program<'p>(scenario: &Scenario, programs: &'p Programs) -> Result<&'p Program, ScenarioError> {
     let no_scene = || ScenarioError::NoScene { file: scenario.file.clone(), scene: scenario.scene.clone() };
     programs.get(&scenario.scene).ok_or_else(no_scene)
@@ -162,7 +154,7 @@ fn ticks_of(ms: f64, tick_hz: u32) -> u64 {
     ticks_spanning(1e-3 * ms, tick_hz)
 }
 
-/// Runs a scenario on a rig, in the [`world`] of the scenario.
+/// Runs a scenario on a rig, in the world of its [`simulation`].
 pub fn run(scenario: &Scenario, programs: &Programs, rig: &mut dyn BoardRig) -> Result<ScenarioOutcome, ScenarioError> {
     let line = ScenarioLine::new(scenario, first_program(scenario, programs)?, rig);
     let mut host = Host::new(scenario, programs, line.clone());

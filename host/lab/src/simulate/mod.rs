@@ -98,14 +98,7 @@ impl PlayOptions {
             touch,
             finger: self.finger_seed.map(own_finger).transpose()?,
         };
-        Ok(Simulation {
-            rig: rig.for_drafts().with(&world),
-            seconds,
-            seed: self.seed,
-            ticks_per_row,
-            through_finger: true,
-            stroke,
-        })
+        Ok(Simulation { rig: rig.for_drafts().with(&world), seconds, seed: self.seed, ticks_per_row, stroke })
     }
 }
 

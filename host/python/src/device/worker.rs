@@ -155,8 +155,12 @@ fn simulated(
     let config = RigConfig::default().for_drafts().with(&WorldOptions::default());
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke.map_err(failed)?, SEED).map_err(failed)?;
-    let link = PollingLink::new(RigStream::new(rig));
-    serve(Device::connect(observed(link)).map_err(failed)?, opened, ends, interrupted);
+    serve(
+        Device::connect(observed(PollingLink::new(RigStream::new(Box::new(rig))))).map_err(failed)?,
+        opened,
+        ends,
+        interrupted,
+    );
     Ok(())
 }
 

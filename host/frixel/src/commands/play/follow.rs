@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 use frixel_driver::Device;
 use frixel_felt::judge::{in_play, starts_off};
 use frixel_felt::recorder::JUDGED_MAX_S;
-use frixel_lab::recording::{check_length, play_fields};
+use frixel_lab::recording::{Metadata, check_length, play_fields};
 use frixel_play::{LiveLayers, Next, PlayError, Player};
 use frixel_scene::Program;
 
@@ -20,7 +20,6 @@ use super::live_scene::{LiveScene, ReplaceOutcome};
 use super::outputs::{Outputs, PlayFiles};
 use super::plan::Plan;
 use super::progress::Bars;
-use super::recorded::metadata;
 use super::{Interrupt, PlayArgs, Played, note, waiting};
 
 /// Plays until the plan is complete, the user interrupts it, or the board stops. Everything up to then is recorded.
@@ -36,7 +35,12 @@ pub(super) fn follow<L: RecordedLink>(
     if let (Some(path), Some(rows)) = (&args.record, plan.rows()) {
         check_length(rows, play_fields().len()).map_err(at(path.display()))?;
     }
-    let metadata = files.sources().map(|sources| metadata(args, sources, &plan, &device, is_simulated));
+    let metadata = files.source().map(|source| {
+        let of_board =
+            Metadata::new(plan.target.name(), Some(device.hello()), is_simulated, args.participant.as_deref());
+        let metadata = Metadata { ticks_per_row: plan.ticks_per_row(), ..of_board };
+        source.recorded(args.options(plan.stream_s), metadata)
+    });
     let outputs = Outputs::create(args, files, is_simulated, &plan.program, metadata)?;
     let recorder = plan.recorder()?;
     let recorder = if args.record.is_some() { recorder.keeping_samples() } else { recorder };

@@ -192,10 +192,10 @@ mod tests {
     use std::fs;
     use std::sync::mpsc::{Sender, channel};
 
-    use frixel_driver::{Device, PollingLink, ignore_progress};
+    use frixel_driver::ignore_progress;
     use frixel_felt::recorder::Recorder;
     use frixel_hil_sim::{BoardMemory, Rig, RigConfig, Stroke};
-    use frixel_play::RigStream;
+    use frixel_play::{SimPlayer, connect};
     use frixel_scene::{TargetRange, compile};
     use tempfile::TempDir;
 
@@ -211,7 +211,7 @@ mod tests {
     /// A simulated board that plays `scene.toml`, watched as at a port: the play does not wait for the compiler.
     struct Watched<'a> {
         folder: TempDir,
-        player: Player<PollingLink<RigStream<'a, Rig<'a>>>>,
+        player: SimPlayer<'a>,
         live: LiveScene,
     }
 
@@ -228,7 +228,7 @@ mod tests {
             let program = compile(&scene.unwrap(), &limits, tick_hz).unwrap();
             let rig = Rig::new(memory, &config, Stroke::sweep(0.12, 0.08, 1.0).unwrap(), 1).unwrap();
             let recorder = Recorder::new(&program, &limits, tick_hz, u64::MAX, 40).unwrap();
-            let device = Device::connect(PollingLink::new(RigStream::new(rig))).unwrap();
+            let device = connect(Box::new(rig)).unwrap();
             let mut player = Player::recording(device, recorder);
             player.start(program, 0, &mut ignore_progress).unwrap();
             let outputs = PlayFiles::new(&args, Target::Port, &files).unwrap();
@@ -271,9 +271,7 @@ mod tests {
 
         /// Refreshes for a second at most, until a scene with this friction plays.
         fn until_plays(&mut self, friction_n: f64) {
-            let plays = |player: &Player<PollingLink<RigStream<Rig>>>| {
-                TargetRange::of(player.playing().unwrap().program()).most_n
-            };
+            let plays = |player: &SimPlayer<'_>| TargetRange::of(player.playing().unwrap().program()).most_n;
             for _ in 0..1_000 {
                 if (plays(&self.player) - friction_n).abs() < 1e-6 {
                     return;

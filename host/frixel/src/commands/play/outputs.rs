@@ -7,14 +7,13 @@ use crate::scene_file::SceneFiles;
 use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
 use frixel_files::{FileWriter, Inputs, OutputFile, OutputFolder, commit_all, is_of_person};
-use frixel_lab::recording::Metadata;
+use frixel_lab::recording::{Metadata, PlaySource};
 use frixel_scene::{LayerTitle, Program, TouchedLayers};
 
 use super::super::error::cut_off;
 use super::PlayArgs;
 use super::Target;
 use super::record_file::{self, RecordFile};
-use super::recorded::Sources;
 use super::with_log::{LayeredRow, LogJoin};
 
 /// The option that names the folder.
@@ -32,8 +31,8 @@ pub(super) struct PlayFiles {
     /// The other of the two, which an earlier play may have left.
     other_svg: OutputFile,
     png: OutputFile,
-    /// The file of `--record`, and the inputs of its recording.
-    record: Option<(OutputFile, Sources)>,
+    /// The file of `--record`, and what its play is made from.
+    record: Option<(OutputFile, PlaySource)>,
 }
 
 impl PlayFiles {
@@ -60,7 +59,7 @@ impl PlayFiles {
                 record.check_apart_from(other)?;
             }
         }
-        let record = record.map(|record| anyhow::Ok((record, Sources::new(args, scene)?))).transpose()?;
+        let record = record.map(|record| anyhow::Ok((record, record_file::source(args, scene)?))).transpose()?;
         Ok(Self { record, ..files })
     }
 
@@ -86,9 +85,9 @@ impl PlayFiles {
         Ok(self.record.iter().try_for_each(|(record, _)| record.check_inputs(&inputs))?)
     }
 
-    /// The inputs of the recording of `--record`.
-    pub(super) fn sources(&self) -> Option<&Sources> {
-        self.record.as_ref().map(|(_, sources)| sources)
+    /// What the play of `--record` is made from.
+    pub(super) fn source(&self) -> Option<&PlaySource> {
+        self.record.as_ref().map(|(_, source)| source)
     }
 
     /// Starts to write `felt.csv`: as a recording on a real board, since a person's movements cannot be repeated.
@@ -139,7 +138,8 @@ impl Outputs {
         // The play that held the lock until now may have been on a real board.
         PlayFiles::check_earlier(args)?;
         let csv = files.start(is_simulated, args)?;
-        let create = |((output, _), metadata): (&(OutputFile, Sources), Metadata)| RecordFile::start(output, metadata);
+        let create =
+            |((output, _), metadata): (&(OutputFile, PlaySource), Metadata)| RecordFile::start(output, metadata);
         let record = files.record.as_ref().zip(metadata).map(create).transpose()?;
         let log = args.with_log.as_deref().map(LogJoin::new);
         let (title, touched) = (args.scene.display().to_string(), TouchedLayers::new(program));

@@ -5,11 +5,15 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use frixel_felt::recorder::{FeltRow, Marker};
-use frixel_lab::recording::{GrowingFile, Metadata, ParquetWriter, ROWS_PER_GROUP, play_fields, play_values};
+use frixel_lab::recording::{
+    GrowingFile, Metadata, ParquetWriter, PlaySource, ROWS_PER_GROUP, play_fields, play_values,
+};
 use frixel_lab::simulate::PlayOptions;
+use frixel_scene::{FingerProfile, Screen};
 
-use crate::commands::error::at;
-use crate::scene_file::SceneFiles;
+use crate::commands::error::{at, reading};
+use crate::input;
+use crate::scene_file::{SceneFiles, named};
 use frixel_files::{FileWriter, Inputs, OutputFile};
 
 use super::super::parquet;
@@ -30,6 +34,20 @@ pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFi
         bail!("{path} is not the name of a Parquet file: give --record a name that ends in .parquet");
     }
     Ok(Some(OutputFile::replacing(path, OPTION, inputs, args.overwrite)?))
+}
+
+/// What a play is made from. Reads the files of profiles and stroke; those of the scene have been read already.
+pub(super) fn source(args: &PlayArgs, scene: &SceneFiles) -> Result<PlaySource> {
+    let names = args.profiles.names();
+    let read = |path| input::read(path, input::CSV_MAX_BYTES).map_err(reading(path));
+    Ok(PlaySource {
+        scene: scene.scene_text(),
+        files: scene.named_bytes().clone(),
+        finger: names.finger.as_deref().map(named::<FingerProfile>).transpose()?,
+        screen: names.screen.as_deref().map(named::<Screen>).transpose()?,
+        touch: args.touch.named()?,
+        stroke: args.stroke.file().map(read).transpose()?,
+    })
 }
 
 /// Writes rows as Parquet while a scene plays.

@@ -41,7 +41,7 @@ pub(super) fn play_on_simulator(args: &PlayArgs, interrupt: &Interrupt) -> Resul
 fn play(args: &PlayArgs, interrupt: &Interrupt) -> (Result<()>, SceneFiles) {
     let (scene, files) = args.profiles.names().load_with_files(&args.scene);
     let played = PlayFiles::new(args, Target::Sim, &files).and_then(|outputs| {
-        let played = rigs::play_on_simulator(args, &scene?, (outputs, None), interrupt)?;
+        let played = rigs::play_on_rig(args, &scene?, Target::Sim, (outputs, None), interrupt)?;
         finish(args, played)
     });
     (played, files)

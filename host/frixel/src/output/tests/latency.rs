@@ -54,8 +54,7 @@ fn errors(program: &Program, name: &str, latency_ms: u32) -> Errors {
     rig.world.touch.latency_s = 1e-3 * f64::from(latency_ms);
     let summaries = SEEDS.map(|seed| {
         let stroke = stroke(name, seed);
-        let seconds = stroke.duration_s();
-        let simulation = Simulation { rig, stroke, seconds, seed, ticks_per_row: 40_000, through_finger: true };
+        let simulation = Simulation { ticks_per_row: 40_000, ..Simulation::of_stroke(rig, stroke, seed) };
         simulate(program, &simulation, None, TO_THE_END).unwrap().recorder.summary()
     });
     let friction = summaries.iter().map(|summary| summary.friction_error.unwrap().rms_n);

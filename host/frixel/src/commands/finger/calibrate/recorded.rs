@@ -35,7 +35,7 @@ pub(super) fn on_simulator(args: &CalibrateArgs, recording: &OutputFile, interru
     let mut memory = BoardMemory::new();
     let rig = Rig::new(&mut memory, &config, stroke, simulation_seed(args.seed, args.finger_seed))?;
     let mut sensor = ForceSensor::new(ROW_HZ, config.board.tick_hz);
-    let line = RigStream::new(rig).observed(|tick| sensor.measure(tick.tick, &tick.felt));
+    let line = RigStream::new(Box::new(rig)).observed(|tick| sensor.measure(tick.tick, &tick.felt));
     let mut player = plan.start(Device::connect(PollingLink::new(line))?, 0)?;
     // A simulated recording is written when it is complete.
     let board = plan.play(&mut player, interrupt, Duration::MAX, &mut std::io::sink())?;
