@@ -1,9 +1,9 @@
 //! The carrier between the DAC and the electrode: the loss of rms voltage at its edges, and the electrode current.
 
-use core::f64::consts::PI;
+use core::f32::consts::FRAC_PI_2;
 
 use crate::Real;
-use crate::double_single::DoubleSingle;
+use crate::double_single::square_root;
 
 /// Shape of a carrier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,23 +66,15 @@ impl Carrier {
     /// assert!((peak * peak * 0.92 - 1.0).abs() < 2e-7);
     /// ```
     pub fn peak_per_rms(&self) -> f32 {
-        let half_period_s = DoubleSingle::from(self.half_period_s);
-        let edge_time_constant_s = DoubleSingle::from(self.edge_time_constant_s);
         let has_lag = self.edge_time_constant_s > 0.0;
-        let square = match self.waveform {
-            Waveform::Square if has_lag => {
-                let lags = half_period_s / (DoubleSingle::TWO * edge_time_constant_s);
-                DoubleSingle::ONE / tangent_deficit(lags, lags * lags)
-            }
-            Waveform::Square => DoubleSingle::ONE,
-            Waveform::Sine if has_lag => {
-                let ticks = DoubleSingle::from(self.half_period_ticks as f32);
-                DoubleSingle::TWO
-                    / held_sine_fraction(half_period_s / (ticks * (DoubleSingle::TWO * edge_time_constant_s)), ticks)
-            }
-            Waveform::Sine => DoubleSingle::TWO,
-        };
-        square.sqrt().to_f32()
+        let lags = 0.5 * self.half_period_s / self.edge_time_constant_s;
+        let ticks = self.half_period_ticks as f32;
+        square_root(match self.waveform {
+            Waveform::Square if has_lag => 1.0 / tangent_deficit(lags, lags * lags),
+            Waveform::Square => 1.0,
+            Waveform::Sine if has_lag => 2.0 / held_sine_fraction(lags / ticks, ticks),
+            Waveform::Sine => 2.0,
+        })
     }
 
     /// The frequency in Hz.
@@ -101,7 +93,7 @@ impl Carrier {
         let swing_c = 2.0 * capacitance_f * drive_v_peak;
         let carrier_hz = self.carrier_hz();
         ElectrodeCurrent {
-            a_rms: swing_c * DoubleSingle::from(carrier_hz / self.edge_time_constant_s).sqrt().to_f32(),
+            a_rms: swing_c * square_root(carrier_hz / self.edge_time_constant_s),
             a_peak: swing_c / self.edge_time_constant_s,
         }
     }
@@ -109,11 +101,11 @@ impl Carrier {
 
 /// Fraction of its mean square that a sine of `half_period_ticks` ticks, each `2 r` time constants long, keeps after a
 /// lag.
-fn held_sine_fraction<T: Real>(r: T, half_period_ticks: T) -> T {
-    let half_angle = T::from_f64(0.5 * PI) / half_period_ticks;
-    let tan = half_angle * (T::ONE - tangent_deficit(half_angle, -(half_angle * half_angle)));
+fn held_sine_fraction(r: f32, half_period_ticks: f32) -> f32 {
+    let half_angle = FRAC_PI_2 / half_period_ticks;
+    let tan = half_angle * (1.0 - tangent_deficit(half_angle, -(half_angle * half_angle)));
     let kept = tangent_deficit(r, r * r);
-    let tanh = r * (T::ONE - kept);
+    let tanh = r * (1.0 - kept);
     let (tan_squared, tanh_squared) = (tan * tan, tanh * tanh);
     (tanh_squared + tan_squared * kept) / (tanh_squared + tan_squared)
 }
@@ -137,6 +129,8 @@ pub(crate) fn tangent_deficit<T: Real>(r: T, square: T) -> T {
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::PI;
+
     use super::*;
 
     #[test]

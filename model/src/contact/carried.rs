@@ -136,12 +136,12 @@ impl<T: Correction> Surroundings<T> {
         (q * q + T::TWO * q * around + n).root()
     }
 
-    /// Relative change of friction, and its derivative, for a relative change of the squared voltage by `change`, of at
-    /// least -1.
-    fn friction_change(&self, change: T) -> (T, T) {
+    /// Relative change of friction, and its derivative over that of the squared voltage, for a relative change of the
+    /// squared voltage by `change`, to the multiple `factor = 1 + change`, whose precision close to zero matters.
+    fn friction_change(&self, change: T, factor: T) -> (T, T) {
         let Self { q, n, around, margin, y } = *self;
         let q_change = q * change;
-        let new_q = q + q_change;
+        let new_q = q * factor;
         let new_around = T::ONE / (T::ONE + new_q);
         let new_margin = Self::margin_at(new_q, new_around, n);
         let around_change = -(q_change * around * new_around);
@@ -150,7 +150,7 @@ impl<T: Correction> Surroundings<T> {
         let margins = new_margin + margin;
         let y_change = q_change + if margins > T::ZERO { square_change / margins } else { T::ZERO };
         let sum = y + around;
-        let friction_change = change + (T::ONE + change) * ((y_change + around_change) / sum);
+        let friction_change = change + factor * ((y_change + around_change) / sum);
         let new_y = y + y_change;
         let steepness = if new_margin > T::ZERO { new_y / new_margin } else { T::ONE };
         (friction_change, (new_y + new_around * new_around) * steepness / sum)
@@ -163,9 +163,10 @@ impl<T: Correction> Surroundings<T> {
         let (mut values, mut slopes, mut weights) = (T::ZERO, T::ZERO, T::ZERO);
         for level in ripple.levels() {
             let [excess, weight] = [level.excess, level.weight].map(T::from);
-            let (value, slope) = self.friction_change(excess + change + excess * change);
+            let level = T::ONE + excess;
+            let (value, slope) = self.friction_change(excess + level * change, level + level * change);
             values = values + weight * value;
-            slopes = slopes + weight * slope * (T::ONE + excess);
+            slopes = slopes + weight * level * slope;
             weights = weights + weight;
         }
         (values / weights, slopes / weights)

@@ -14,9 +14,7 @@ use super::bitmap_directory::Directory;
 /// Grid cells whose cost is computed per step of loading.
 const CELLS_PER_STEP: usize = 64;
 /// Rows of the inverse table computed per step of loading.
-const ROWS_PER_STEP: usize = 2;
-/// Rows of an empirical law's table computed per step of loading.
-const LAW_ROWS_PER_STEP: usize = 2;
+const ROWS_PER_STEP: usize = 1;
 
 /// The next step of loading a scene.
 #[derive(Clone, Debug)]
@@ -48,7 +46,7 @@ pub(crate) enum Loading {
 
 impl Loading {
     /// Computes the next part of the coefficients of `scene` into `active`, and returns whether it was the last one. A
-    /// step takes well under a millisecond, and 8 ms on an RP2040. Before the last step, the content of `active` must
+    /// step takes well under a millisecond, and 5 ms on an RP2040. Before the last step, the content of `active` must
     /// not be used; if the scene is refused, `active` holds no scene.
     pub(crate) fn step(
         &mut self,
@@ -112,7 +110,7 @@ impl Loading {
             Self::LawRows(filling) => {
                 let Some(law) = header.law() else { return Ok(true) };
                 return filling
-                    .fill(&mut active.table, LAW_ROWS_PER_STEP)
+                    .fill(&mut active.table, ROWS_PER_STEP)
                     .map_err(|error| Refusal::Config(no_law(&error, law)));
             }
         };
