@@ -18,9 +18,10 @@ impl Lag {
     pub(super) fn new(time_constant_s: f64, time_s: f64) -> Self {
         // Infinite without a lag, which leaves remainder, mean and variance at zero.
         let lags = time_s / time_constant_s;
-        let mean = -libm::expm1(-lags) / lags;
-        let mean_square = -libm::expm1(-2.0 * lags) / (2.0 * lags);
-        Self { remainder: libm::exp(-lags), mean, variance: (mean_square - mean * mean).max(0.0) }
+        let followed = -libm::expm1(-lags);
+        let (remainder, mean) = (1.0 - followed, followed / lags);
+        let mean_square = 0.5 * mean * (1.0 + remainder);
+        Self { remainder, mean, variance: (mean_square - mean * mean).max(0.0) }
     }
 }
 

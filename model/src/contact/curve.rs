@@ -34,10 +34,10 @@ impl<T: Real> Point<T> {
 
     #[inline]
     fn new(v: T, q: T, around: T, n: T) -> Option<Self> {
-        let margin = if q < T::from(1e-15) && n >= T::ZERO {
+        let margin = if q.to_f32() < 1e-15 && n >= T::ZERO {
             // The square would overflow or underflow: take the root of each part first.
             hypotenuse(v * (q + T::TWO * around).sqrt(), n.sqrt())
-        } else if q > T::from(1e18) {
+        } else if q.to_f32() > 1e18 {
             q * (T::ONE + (T::TWO * q * around + n) / q / q).sqrt()
         } else {
             let square = q * q + T::TWO * q * around + n;
@@ -70,7 +70,7 @@ impl<T: Real> Point<T> {
 #[inline]
 pub(crate) fn root_of_quotient<T: Real>(numerator: T, denominator: T) -> T {
     let quotient = numerator / denominator;
-    if quotient > T::from(1e-30) && quotient < T::from(1e30) {
+    if (1e-30..1e30).contains(&quotient.to_f32()) {
         quotient.sqrt()
     } else {
         numerator.sqrt() / denominator.sqrt()
@@ -86,12 +86,12 @@ pub(crate) fn upper_inverse<T: Real>(y: T, r: T) -> T {
     let b = T::TWO + T::TWO / y - r;
     let size = b.abs();
     let eight_r = T::from(8.0) * r;
-    if size < T::from(1e15) {
+    if size.to_f32() < 1e15 {
         let sum = size + (size * size + eight_r).sqrt();
-        if b >= T::ZERO { (T::TWO * r / sum).sqrt() } else { (sum / T::from(4.0)).sqrt() }
+        if b.to_f32() >= 0.0 { (T::TWO * r / sum).sqrt() } else { (sum / T::from(4.0)).sqrt() }
     } else {
         let sum = size * (T::ONE + (T::ONE + eight_r / size / size).sqrt());
-        if b >= T::ZERO { (T::TWO * r).sqrt() / sum.sqrt() } else { (sum / T::from(4.0)).sqrt() }
+        if b.to_f32() >= 0.0 { (T::TWO * r).sqrt() / sum.sqrt() } else { (sum / T::from(4.0)).sqrt() }
     }
 }
 

@@ -26,7 +26,7 @@ use frixel_wire::payload::{self, CHUNK_LEN, Payload};
 use frixel_wire::scene::bitmap_crc32;
 
 /// Most polls that a commit takes.
-pub const COMMIT_POLLS_MAX: u32 = 128;
+pub const COMMIT_POLLS_MAX: u32 = 200;
 
 pub struct TestBoard {
     pub session: Session<'static>,
