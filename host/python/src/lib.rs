@@ -35,7 +35,7 @@ mod _frixel {
     #[pymodule_export]
     use super::output::write_files;
     #[pymodule_export]
-    use super::profile::{bundled_profiles, check_profile};
+    use super::profile::{bundled_profiles, check_profile, profile_text};
     #[pymodule_export]
     use super::recording::{parquet, play_fields, read_parquet, replay};
     #[pymodule_export]

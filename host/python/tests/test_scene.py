@@ -54,6 +54,8 @@ def test_a_scene_that_is_no_file_is_said(tmp_path: Path) -> None:
     (tmp_path / "brick.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(5 << 20))
     with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a scene: make a scene"):
         Scene.load(tmp_path / "brick.png")
+    with pytest.raises(SceneError, match=r"brick\.png:1:1: this is a picture; expected a finger profile: make a scene"):
+        Finger.load(tmp_path / "brick.png")
     with pytest.raises(SceneError, match="this is a scene; expected a screen: play it with `frixel play`"):
         Screen.parse("version = 1\n")
     (tmp_path / "picture.toml").write_text('version = 1\n[[layer]]\nkind = "picture"\nfile = "brik.png"\n')

@@ -103,7 +103,7 @@ pub(super) fn bytes_of(files: &BTreeMap<String, SourceFile>) -> Result<FileBytes
     let bytes = |(name, file): (&String, &SourceFile)| match (file.bytes(), file) {
         (Some(bytes), _) => Ok((name.clone(), bytes)),
         (None, SourceFile::Hash { .. }) => {
-            Err(refused(format!("it has only the hash of the file {}, which is large", brief(name))))
+            Err(refused(format!("it holds only the hash of the large file {}", brief(name))))
         }
         (None, _) => Err(missing(name)),
     };
@@ -120,7 +120,7 @@ fn missing(name: &str) -> ReplayError {
 fn of_profile(error: ProfileError) -> ReplayError {
     match error {
         ProfileError::NotBundled { kind, name, .. } => {
-            refused(format!("this frixel has no {kind} called {}: use the one that recorded it", brief(&name)))
+            refused(format!("this frixel has no {kind} named {}: use the one that recorded it", brief(&name)))
         }
         ProfileError::Mistakes(mistakes) => mistakes.into(),
     }

@@ -59,8 +59,8 @@ class _Profile:
         SceneError
             The file cannot be read, or has mistakes.
         """
-        text = read_bytes(path, SceneError, is_toml=True)
-        return cls(text.decode(errors="replace"), name_of(path))
+        content, name = read_bytes(path, SceneError, is_toml=True), name_of(path)
+        return cls(_frixel.profile_text(cls.kind, content, name), name)
 
     @classmethod
     def parse(cls, text: str) -> Self:
