@@ -8,6 +8,7 @@
 //! | `frixel-*.whl` | the Python module, with its widget |
 //! | `frixel-studio.html` | the page |
 //! | `site` | the page, `<frixel-scene>` and the gallery for a web server |
+//! | `docs`, `scenes`, `README.md` | what there is to read, and scenes to start from |
 //! | `LICENCES.txt` | the licences of all of it; wheel and page have their own inside as well |
 //! | `SHA256SUMS` | for `sha256sum --check` |
 //!
@@ -33,6 +34,8 @@ const PROFILE: &str = "wheel";
 const PYTHON: &str = "host/python";
 /// Text in the wheel, beside frixel's own licences.
 const WHEEL_LICENCES: &str = "LICENCES.txt";
+/// Folders of the repository that are handed on as they are.
+const READ: [&str; 2] = ["docs", "scenes"];
 /// Program and file of each image, and what it is compiled from.
 const IMAGES: [(&str, &str, Program); 6] = [
     ("board-mps2-an386", "board-mps2-an386.elf", board("firmware/board-mps2-an386", M4F, &[])),
@@ -82,6 +85,12 @@ pub(crate) fn make(folder: &str) -> Result<(), String> {
     copy(&studio::build()?, &folder.join("frixel-studio.html"))?;
     studio::build_site(&folder.join("site").to_string_lossy(), None)?;
     wheel(&folder)?;
+    for name in READ {
+        for file in files_below(&root().join(name))? {
+            copy(&file, &folder.join(file.strip_prefix(root()).unwrap_or(&file)))?;
+        }
+    }
+    copy(&root().join("README.md"), &folder.join("README.md"))?;
     let boards = IMAGES.map(|(_, _, program)| program);
     let programs = [[COMMAND].as_slice(), &WHEEL, &boards].concat();
     let emulator = format!("rp2040js, the emulator of the Pico (MIT)\n\n{}", pico_rig::licence()?);
