@@ -128,12 +128,14 @@ test("Arm has its place, and Stop is red and stays where it is", async () => {
         show({ link: "serial", state, fault, needsArm: state === "disarmed", driving });
         const button = document.getElementById(state === "disarmed" ? "arm" : "clear-fault");
         const { left, right } = button.getBoundingClientRect();
+        const isCut = button.scrollHeight > button.clientHeight + 1;
         const stop = getComputedStyle(document.getElementById("stop")).backgroundColor;
-        return { isShown: button.checkVisibility(), left, right, stop: stop.match(/\d+/g).map(Number) };
+        return { isShown: button.checkVisibility(), isCut, left, right, stop: stop.match(/\d+/g).map(Number) };
       }, state);
       const where = `${size}: ${state} ${JSON.stringify(shown)}`;
       assert.deepEqual(await boxes(page, parts), before, `${where} moves the page`);
       assert.equal(shown.isShown, state !== "active", where);
+      assert.ok(!shown.isCut, `${where}: words are cut`);
       if (shown.isShown) assert.ok(shown.right <= before["#stop"].left && shown.left >= 0, where);
       const [red, green, blue] = shown.stop;
       assert.ok(red > 150 && green < 80 && blue < 80, `${where}: Stop is red`);

@@ -130,14 +130,15 @@ live = true
 function onBoard(said) {
   const show = async (page) => {
     await page.evaluate((said) => {
-      const driving = "board nucleo-g474re with an electrode, up to 50 V peak";
+      const driving = "NUCLEO-G474RE with an electrode, up to 43.8 V peak";
       const { engine } = studioPage;
       const show = engine.onState;
       // What the simulator reports meanwhile is not shown.
       engine.onState = () => {};
       show({ link: "serial", driving, fault: undefined, ...said });
     }, said);
-    await page.waitForTimeout(300);
+    // Arm can be pressed a second after it has appeared.
+    await page.waitForTimeout(1300);
   };
   return [{ clip: { x: 0, y: 0, width: 1440, height: 360 } }, show];
 }

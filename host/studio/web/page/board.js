@@ -96,11 +96,12 @@ export class Board {
     const board = byId("board");
     board.dataset.state = state;
     Object.assign(document.documentElement.dataset, { state, link });
-    const name = link === "simulator" ? "Simulator" : driving;
     const isStopped = link === "simulator" && state === "disarmed";
     const word = isStopped ? "stopped" : STATE_WORDS[state];
     const details = fault && link !== "none" ? `, ${fault}` : "";
-    board.textContent = link === "none" ? "No board" : `${name}: ${word}${details}`;
+    // Of a board's long name the end may be cut: Arm has it, too.
+    const of = { none: "No board", simulator: `Simulator: ${word}${details}`, serial: `${word}${details}: ${driving}` };
+    board.textContent = of[link];
     board.title = board.textContent;
     this.#showArm(needsArm);
     const arm = byId("arm");
