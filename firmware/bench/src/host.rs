@@ -17,7 +17,7 @@ pub const STREAM_TICKS_PER_SAMPLE: u32 = 2;
 pub const STREAM_FRAME: usize = 64;
 
 /// Most steps that a commit takes.
-const COMMIT_STEPS_MAX: u32 = 128;
+const COMMIT_STEPS_MAX: u32 = 200;
 
 /// A session, and the ticker that receives its orders.
 pub struct Host<'a> {

@@ -19,7 +19,7 @@ use super::bench::BOARD;
 /// queue holds.
 const LAG_TICKS_MAX: u32 = 40;
 /// Steps of a commit, at most.
-const COMMIT_STEPS_MAX: u32 = 128;
+const COMMIT_STEPS_MAX: u32 = 200;
 /// Numbers of kinds of orders.
 const SIGN_OF_LIFE: u32 = 0;
 const TRACK: u32 = 1;
