@@ -137,8 +137,9 @@ function onBoard(said) {
       engine.onState = () => {};
       show({ link: "serial", driving, fault: undefined, ...said });
     }, said);
-    // Arm can be pressed a second after it has appeared.
-    await page.waitForTimeout(1300);
+    // Arm can be pressed some time after it has appeared.
+    await page.waitForFunction(() => document.querySelector("#arm[hidden], #arm:enabled"));
+    await page.waitForTimeout(300);
   };
   return [{ clip: { x: 0, y: 0, width: 1440, height: 360 } }, show];
 }
