@@ -128,7 +128,7 @@ fn bytes_behind_the_rows_of_a_recording_are_noticed() {
     let bytes = fs::read(folder.path().join("a.parquet")).unwrap();
     fs::write(folder.path().join("b.parquet"), [bytes.as_slice(), b"more"].concat()).unwrap();
     let said = refused(folder.path(), "b.parquet");
-    assert!(said.contains("play the same bits, and the bytes behind them are no rows"), "{said}");
+    assert!(said.contains("play the same bits, but the bytes after them are not rows"), "{said}");
 }
 
 /// Asserts that the recording `a.parquet` of a folder is played again from this file alone.

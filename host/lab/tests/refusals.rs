@@ -69,7 +69,7 @@ fn samples_of_the_carrier_are_refused() {
 
 #[test]
 fn loads_and_units() {
-    refused(|row| row.normal_force_n = 0.0, &["there are no loads", "load cell"]);
+    refused(|row| row.normal_force_n = 0.0, &["is zero throughout", "load cell"]);
     refused(|row| row.normal_force_n *= 1e3, &["millinewtons", "give newtons"]);
     refused(|row| row.normal_force_n *= 20.0, &["kilopascals", "contact area"]);
     refused(|row| row.friction_n *= 1e3, &["friction looks like millinewtons"]);
@@ -153,10 +153,10 @@ fn all_strokes_with_faults_are_named_at_once() {
 #[test]
 fn voltages() {
     refused(|row| row.voltage_v_rms = 0.0, &["the voltage is zero throughout"]);
-    refused(|row| row.voltage_v_rms = 150.0, &["one voltage only"]);
-    refused(|row| row.voltage_v_rms = if row.voltage_v_rms > 0.0 { 150.0 } else { 0.0 }, &["one voltage only", "106"]);
+    refused(|row| row.voltage_v_rms = 150.0, &["only one voltage"]);
+    refused(|row| row.voltage_v_rms = if row.voltage_v_rms > 0.0 { 150.0 } else { 0.0 }, &["only one voltage", "106"]);
     refused(|row| row.voltage_v_rms = row.voltage_v_rms.max(50.0), &["no row has a voltage of zero"]);
-    refused(|row| row.voltage_v_rms *= 0.8, &["the data reach 120.0 V rms", "--voltage 120"]);
+    refused(|row| row.voltage_v_rms *= 0.8, &["the data end at 120.0 V rms", "--voltage 120"]);
     // Voltage and friction that do not belong together.
     refused(|row| row.friction_n = 0.5 * row.normal_force_n, &["adds no friction"]);
 }

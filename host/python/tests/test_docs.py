@@ -67,7 +67,7 @@ def test_other_programs_see_and_keep_what_a_recording_says(
     assert schema.metadata[b"frixel.scene"].decode() == recording.scene.text
     assert schema.field("x_mm").metadata[b"unit"] == b"mm"
     # What another program wrote is no recording any more.
-    with pytest.raises(frixel.PlayError, match="another hash than it says"):
+    with pytest.raises(frixel.PlayError, match="its hash does not match its content"):
         frixel.replay("kept.parquet")
 
 

@@ -59,7 +59,7 @@ def test_data_that_give_no_finger_are_refused() -> None:
         fit({name: data[name] for name in ("voltage_v_rms", "normal_force_n")})
     with pytest.raises(FitError, match=r"no column normal_force_n \(it has normal_n\): name the column so, in newtons"):
         fit({"voltage_v_rms": data["voltage_v_rms"], "friction_n": data["friction_n"], "normal_n": data["friction_n"]})
-    with pytest.raises(FitError, match="state it lower with `voltage_v_rms` 75"):
+    with pytest.raises(FitError, match="or use `voltage_v_rms` 75"):
         fit({**data, "voltage_v_rms": data["voltage_v_rms"] / 2})
     with pytest.raises(FitError, match="or leave out `normal_load_n`"):
         fit(data, normal_load_n=50)

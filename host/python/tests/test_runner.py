@@ -55,9 +55,9 @@ def test_answers_through_a_pipe_are_kept_and_a_session_that_was_cut_off_goes_on(
     kept = rows(folder)
     assert [row["response"] for row in kept] == [0, 1]
     other = ran(folder, *ON_BOARD, "--voltage", 100)
-    assert "that of another session" in other.stderr
+    assert "belongs to another session" in other.stderr
     simulated = ran(folder, "--observer", 3, "--trials", 12)
-    assert "that of another session" in simulated.stderr, "no simulated answer is among those of a person"
+    assert "belongs to another session" in simulated.stderr, "no simulated answer is among those of a person"
     # Who always says 1 is right in half of the trials.
     guessed = ran(folder, *ON_BOARD, answers="1\n" * 45)
     assert guessed.returncode == 1
@@ -79,7 +79,7 @@ def test_ten_wrong_answers_end_it(tmp_path: Path) -> None:
     ("options", "words"),
     [
         ([], "give --port PATH, or --observer SEED"),
-        (["--observer", "1", "--port", "sim"], "who feels no board"),
+        (["--observer", "1", "--port", "sim"], "who needs no board"),
         (["--port", "nowhere"], "nowhere"),
         (["--observer", "1", "--trials", "11"], "--trials is 12 to 200, found 11"),
         (["--observer", "1", "--voltage", "nan"], "--voltage is 1 to 150 V rms, found nan"),

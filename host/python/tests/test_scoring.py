@@ -77,7 +77,7 @@ def test_a_score_is_data_that_can_be_sent_elsewhere() -> None:
         ({"jobs": 0}, "jobs is a whole number from 1 to 1000, found 0"),
         ({"stroke": "natural"}, 'a stroke is "human", "human-rough", "sweep" or a Stroke'),
         ({"stroke": 3}, 'a stroke is "human", "human-rough", "sweep" or a Stroke, found 3'),
-        ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or share"),
+        ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or split"),
         ({"people": 1000, "seconds": 600}, "are 2400000 s of strokes, and 36000 s fit into memory: give fewer or"),
         ({"stroke": "sweep", "median_speed_mm_per_s": 50}, "only human strokes have a median speed: leave it out"),
         ({"touch": "50"}, "no bundled touch source is named `50`"),

@@ -110,8 +110,8 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
         (lambda: Stroke.human(1, seconds=-1), "seconds is a number above 0, found -1"),
         (Stroke, "a stroke is made by Stroke.straight, human or from_arrays"),
         (lambda: Simulator(FLAT, rows_per_s=7).run(1), "rows_per_s: 7 rows a second do not .*; give 5 or 8"),
-        (lambda: Simulator(FLAT).run(-1), "a play lasts from a tick"),
-        (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from a tick"),
+        (lambda: Simulator(FLAT).run(-1), "a play lasts from one tick"),
+        (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from one tick"),
         (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
         (lambda: Stroke.from_arrays([-1, 1], [1, 2], [1, 2]), r"t_s\[0\]: -1 is below 0: give time"),

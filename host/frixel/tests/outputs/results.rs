@@ -45,7 +45,7 @@ fn no_command_replaces_its_input_a_recording_or_a_protected_file() {
             folder.write(&written, of_a_person);
             refused(&[
                 "is a recording of a person, and results do not overwrite it: give",
-                "has a play on a real board",
+                "holds a play on a real board",
             ]);
             if !output.input.is_empty() {
                 symlink(folder.path(output.input), folder.path(&written)).unwrap();

@@ -45,7 +45,7 @@ fn a_play_to_a_port_draws_what_the_board_commanded_and_joins_what_was_felt() {
     // A log of something else.
     fs::write(folder.path().join("old.csv"), "t_s,x_mm,y_mm,speed_mm_s,felt_n\n0.001,,,,\n").unwrap();
     let refused = run(folder.path(), &[&play[..], &["--with-log", "old.csv"]].concat());
-    assert!(!refused.status.success() && said(&refused).contains("whose port this is"), "{}", said(&refused));
+    assert!(!refused.status.success() && said(&refused).contains("that has this port"), "{}", said(&refused));
 }
 
 #[test]

@@ -442,8 +442,8 @@ mod tests {
             (format!("{header},friction_sd_n\n"), "no column n"),
             (format!("{header},friction_sd_n,friction_se_n,n\n"), "leave one of them out"),
             (format!("{header},friction_se_n,n\n0,0.5,0.2,0.01,1\n"), "row 2, column n: expected a whole number"),
-            (format!("{header},friction_se_n\n0,0.5,0.2,0\n"), "row 2: the standard error of 0 N"),
-            (format!("{header},friction_se_n\n0,0.5,0.2,1e300\n"), "row 2: the standard error of 1e300 N"),
+            (format!("{header},friction_se_n\n0,0.5,0.2,0\n"), "row 2: a standard error of 0 N"),
+            (format!("{header},friction_se_n\n0,0.5,0.2,1e300\n"), "row 2: a standard error of 1e300 N"),
             (format!("{header},friction_se_n\n0,0.5,0.2,0.01\n"), "1 means are too few"),
             (
                 format!("{header},friction_se_n\n10,0.5,0.2,0.01\n75,0.5,0.2,0.01\n150,0.5,0.2,0.01\n"),

@@ -299,15 +299,15 @@ mod tests {
     fn a_footer_has_the_columns_and_the_rows_that_are_read() {
         assert!(check_footer(&footer(&[0; 12], &[65_536; 80])).is_ok());
         for (encoded, says) in [
-            (footer(&[1; 60], &[]), "columns have columns in them"),
+            (footer(&[1; 60], &[]), "nested columns"),
             (footer(&vec![1; 10_000], &[]), "it has 10000 columns, and at most 64 are read"),
             (footer(&[0; 1], &[(1 << 31) - 1]), "2147483647 rows, and at most 10000000"),
             (footer(&[0; 1], &[i64::MAX; 3]), "rows, and at most 10000000"),
             (footer(&[0; 64], &[9_000_000]), "576000000 values, and at most 67108864"),
             (footer(&[0; 1], &vec![0; 70_000]), "70000 row groups, and at most 65536"),
             (field(9, LIST, &[0xf0 | STRUCT, 0xff, 0xff, 0xff, 0x7f]), "a list ends early"),
-            (field(1, STRUCT, &vec![0x1c; 100_000]), "columns have columns in them"),
-            (field(1, LIST, &vec![0x19; 100_000]), "columns have columns in them"),
+            (field(1, STRUCT, &vec![0x1c; 100_000]), "nested columns"),
+            (field(1, LIST, &vec![0x19; 100_000]), "nested columns"),
         ] {
             let error = refusal(check_footer(&encoded));
             assert!(error.contains(says), "{says}: {error}");

@@ -122,7 +122,9 @@ fn whole_part(bytes: &Bytes) -> Result<(Bytes, usize), RecordingError> {
             return Err(RecordingError::Damaged(error));
         }
     }
-    Err(RecordingError::refused("its end, which describes the rest, is missing: take a complete copy, or record again"))
+    Err(RecordingError::refused(
+        "its end is missing, and with it the description of the rest: take a complete copy, or record again",
+    ))
 }
 
 fn metadata_of(file: &ParquetMetaData) -> Result<(Metadata, Vec<Field>), RecordingError> {

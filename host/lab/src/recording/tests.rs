@@ -241,13 +241,13 @@ fn what_is_no_recording_is_refused_with_what_to_do() {
     };
     let cases: [(Vec<u8>, &str); 9] = [
         (Vec::new(), "it is empty"),
-        (b"t_s,x_mm\n".to_vec(), "no Parquet file"),
+        (b"t_s,x_mm\n".to_vec(), "not a Parquet file"),
         (own[..own.len() - 1].to_vec(), "its end is missing"),
         (b"PAR1".to_vec(), "its end is missing"),
         (foreign, "without frixel's metadata"),
         (newer, "format 2, and this frixel reads format 1"),
         (replaced("\"is_simulated\":true", "\"is_simulated\":1234"), "`frixel.recording` cannot be read"),
-        (sealed(replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\"")), "not those that its metadata names"),
+        (sealed(replaced("\"name\":\"felt_n\"", "\"name\":\"melt_n\"")), "differ from those in its metadata"),
         (replaced("\"participant\":\"P07\"", "\"participant\":\"P08\""), "its hash does not match its content"),
     ];
     for (bytes, says) in cases {

@@ -135,7 +135,7 @@ impl Misplaced<'_> {
     fn in_scene(self, scene: &str) -> String {
         match self {
             Self::Part(part) => format!(
-                "\"{}\" is not a field of {scene}: give the path of one field, such as \"drive.voltage_max_v_rms\" or \
+                "\"{}\" cannot be set in {scene}: give the path of one field, such as \"drive.voltage_max_v_rms\" or \
                  \"layer.2.high_n\"",
                 brief(part)
             ),
@@ -217,12 +217,12 @@ mod tests {
             ("layer.3.high_n", "a.toml has no layer 3, but 2 layers: write layer.1 to layer.2"),
             ("layer.first.high_n", "no layer first"),
             ("layer.0.high_n", "no layer 0"),
-            ("layer.1", "no place for a value"),
-            ("layer", "\"layer\" is not a field"),
-            ("layer.2.region", "\"region\" is not a field"),
-            ("version.x_mm", "\"version\" is not a field"),
-            ("layer.1.kind.x", "\"kind\" is not a field"),
-            ("", "no place for a value"),
+            ("layer.1", "cannot be set in a.toml"),
+            ("layer", "\"layer\" cannot be set"),
+            ("layer.2.region", "\"region\" cannot be set"),
+            ("version.x_mm", "\"version\" cannot be set"),
+            ("layer.1.kind.x", "\"kind\" cannot be set"),
+            ("", "cannot be set in a.toml"),
         ] {
             let error = set(path, &value).unwrap_err();
             assert!(error.contains(said), "{path}: {error}");
