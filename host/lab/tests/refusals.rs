@@ -181,7 +181,7 @@ fn time_and_length() {
     rows[900].time_s = rows[800].time_s;
     says(fit_of(rows), &["row 902, column time_s", "time goes backwards"]);
     let short = Protocol { stroke_s: 0.3, length_mm: 15.0, ..Protocol::default() };
-    says(fit_of(Person::example(1).record(&short)), &["stroke 1 is too short, 0.299 s", "0.4 s"]);
+    says(fit_of(Person::example(1).record(&short)), &["stroke 1 is too short (0.299 s)", "0.4 s"]);
     let few = Protocol { strokes: 5, ..Protocol::default() };
     says(fit_of(Person::example(1).record(&few)), &["5 strokes are too few"]);
     says(fit_of(Vec::new()), &["0 strokes are too few"]);
