@@ -46,7 +46,7 @@ fn the_first_scene_after_bring_up_is_taken_and_drives_what_the_monitor_sees() {
     let path = "hardware/first_voltage.toml";
     assert!(fs::read_to_string(repository().join("docs/board/hardware.md")).unwrap().contains(path));
     let said = succeed(&repository(), &["check", path, "--board", "nucleo-g474re"]);
-    assert!(said.contains("NUCLEO-G474RE behind 68 kOhm takes it"), "{said}");
+    assert!(said.contains("NUCLEO-G474RE behind 68 kOhm accepts it"), "{said}");
     // A scene that asks for all that the drive gives has one target.
     let targets = said.lines().find_map(|line| line.trim().strip_prefix("targets")).unwrap();
     let [least_n, largest_n] = [0, 2].map(|word| targets.split_whitespace().nth(word).unwrap());

@@ -98,7 +98,7 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
     if program.header.voltage_max_v_peak > allowed_v_peak {
         "refuses it for now, and would accept it once limits are stored"
     } else {
-        "takes it"
+        "accepts it"
     }
 }
 
