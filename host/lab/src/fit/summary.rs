@@ -217,12 +217,15 @@ const NO_VERDICT_OF_LOAD: &str = "no verdict on the model: the loads were too al
 fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
     let Estimate { value, low, high } = exponent.measured;
     let model = exponent.model;
-    let outcome = match exponent.verdict {
+    // Digits that tell a doubted model from the data.
+    let (outcome, digits) = match exponent.verdict {
         Verdict::None => return no_verdict.to_owned(),
-        Verdict::Kept => "is not contradicted",
-        Verdict::Doubted => "is in doubt",
+        Verdict::Kept => ("is not contradicted", 2),
+        Verdict::Doubted => ("is in doubt", 3),
     };
-    format!("{value:.2} (95 % interval {low:.2} to {high:.2}); the model predicts {model:.2} and {outcome}")
+    format!(
+        "{value:.digits$} (95 % interval {low:.digits$} to {high:.digits$}); the model predicts {model:.digits$} and {outcome}"
+    )
 }
 
 /// The limits of the data, as sentences.

@@ -252,7 +252,7 @@ fn a_trigger_of_a_stream_without_samples_is_refused() {
     let mut player = playing(program(stream));
     player.change_layer("voice", Some(false), None).unwrap();
     let refused = player.trigger("voice", Some(0.05)).unwrap_err();
-    assert!(refused.is_refusal() && refused.to_string().contains("give `--stream FILE`"), "{refused}");
+    assert!(refused.is_refusal() && refused.to_string().contains("add `--stream FILE`"), "{refused}");
     player.stream(Feed::of(vec![0; 100], 4_000)).unwrap();
     player.trigger("voice", Some(0.05)).unwrap();
 }

@@ -43,7 +43,7 @@ fn a_scene_of_too_many_layers_is_one_mistake() {
         let error = Scene::parse(format!("version = 1\n{layers}"), "scene.toml", &BTreeMap::new());
         let mistakes = error.map_or_else(|error| error.diagnostics, |scene| scene.mistakes().to_vec());
         let [mistake] = &mistakes[..] else { panic!("{}", mistakes.len()) };
-        let says = format!("there are {found} layers in this scene, and at most 4096 are read: no board takes ");
+        let says = format!("there are {found} layers in this scene, and at most 4096 are read: no board supports ");
         assert!(mistake.message.to_string().starts_with(&says), "{mistake}");
     }
     let scene = Scene::parse(format!("version = 1\n{}", flat.repeat(4_096)), "scene.toml", &BTreeMap::new());

@@ -324,7 +324,7 @@ mod tests {
         let files = files(&args);
         fs::write(folder.path().join("summary.json"), "{\"simulated\":false}").unwrap();
         let error = Outputs::create(&args, files, true, &program("plate"), None).err().unwrap().to_string();
-        assert!(error.contains("which no other play replaces"), "{error}");
+        assert!(error.contains("which is not overwritten"), "{error}");
     }
 
     #[test]
