@@ -107,7 +107,7 @@ fn hold_goals(cases: &[(Class, f64, Goal, FidelityMean)]) {
 
 #[test]
 fn textures_are_felt_within_the_goals() {
-    hold_goals(&cases(&HUMAN_TEST_SEEDS.take(4)));
+    hold_goals(&cases(&HUMAN_TEST_SEEDS.take(8)));
 }
 
 /// The rows of the cases, with the numbers that miss the goal of their speed.

@@ -70,11 +70,7 @@ impl<T: Real> Point<T> {
 #[inline]
 pub(crate) fn root_of_quotient<T: Real>(numerator: T, denominator: T) -> T {
     let quotient = numerator / denominator;
-    if (1e-30..1e30).contains(&quotient.to_f32()) {
-        quotient.sqrt()
-    } else {
-        numerator.sqrt() / denominator.sqrt()
-    }
+    if (1e-30..1e30).contains(&quotient.to_f32()) { quotient.sqrt() } else { numerator.sqrt() / denominator.sqrt() }
 }
 
 /// The `v` at which the upper curve passes `y`, with `r = (y^2 - n)/y`.
