@@ -3,16 +3,11 @@
 use crate::command::run_lines;
 
 /// The parts: a name, what it checks, and its commands.
-const PARTS: [(&str, &str, &[&str]); 10] = [
+const PARTS: [(&str, &str, &[&str]); 9] = [
     (
         "tables",
         "every f32 and every 32-bit code through the inverse tables",
         &["cargo test --locked --release -p frixel-model -- --ignored --nocapture"],
-    ),
-    (
-        "strokes",
-        "textures under many strokes of people",
-        &["cargo test --locked --release -p frixel --test main -- --ignored --nocapture felt::"],
     ),
     (
         "people",
