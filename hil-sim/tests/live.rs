@@ -159,8 +159,8 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
     // Every phase of the touch source: the tick of the swap may take a report, too.
     for delay in 0..5 {
         let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
-        // The commit advances by a step a tick: 27 for these scenes.
-        assert!((1_000..1_050).contains(&swap), "{swap}");
+        // The commit advances by a step a tick: fewer than 100 for these scenes.
+        assert!((1_000..1_100).contains(&swap), "{swap}");
         assert_eq!(commanded_bits(&swapped[..swap]), commanded_bits(&before[..swap]), "delay {delay}");
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
         let commanded_n = |record: &RigTick<Status>| record.status.telemetry.commanded_electric_friction_n;

@@ -265,7 +265,8 @@ mod tests {
         let place_m = [0.03, 0.03];
         let sample = PointerSample { tick: 0.0, place_m, is_down: true, normal_load_n: Some(0.5) };
         simulator.add_pointer_sample(sample);
-        simulator.run(4_000, true).unwrap();
+        // Before the board takes the finger to stand still.
+        simulator.run(2_000, true).unwrap();
         let samples = simulator.take_felt();
         let [contact_mm, voltage_v] = [10, 5].map(|column| *samples.columns[column].last().unwrap());
         let still_mm = 1e3 * (4.0 * 8e-3 * 0.5 / (std::f32::consts::PI * 1.8e7)).powf(0.25);
