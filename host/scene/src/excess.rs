@@ -16,6 +16,8 @@ use crate::reference::Reference;
 
 /// Multiple of the reach from which on another unit was probably meant.
 const UNIT_MISTAKE_FACTOR: f64 = 20.0;
+/// Least number that a person writes who means mN.
+const MILLINEWTONS_MIN: f64 = 1.0;
 
 /// Computes the fields of [drive] to raise for an electric friction in newtons, and their values; empty if that is not
 /// possible.
@@ -141,6 +143,7 @@ impl Demand<'_> {
                 cure: self.cure_above(is_sum, Some(digits(asked.high, up)).filter(|_| may_be_total)),
                 raise: if has_fraction { Vec::new() } else { (self.raise)(asked.high) },
                 may_be_millinewtons: !has_fraction
+                    && target_n >= MILLINEWTONS_MIN
                     && target_n > UNIT_MISTAKE_FACTOR * reach_n
                     && 1e-3 * target_n <= reach_n,
             };

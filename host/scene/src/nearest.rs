@@ -91,7 +91,8 @@ impl Nearest {
             .filter(|(likeness, _)| *likeness >= Self::LIKENESS_MIN)
             .max_by(|(one, _), (other, _)| one.total_cmp(other))
             .map(|(_, word)| word.clone());
-        Self { suggestion, known, remark: "" }
+        let remark = suggestion.as_ref().map_or("", |word| other_unit(&found, word));
+        Self { suggestion, known, remark }
     }
 
     /// The file name most similar to another one, compared without extensions, which many files share.
@@ -101,6 +102,16 @@ impl Nearest {
         let (same_ending, other): (Vec<&String>, _) =
             files.iter().filter(is_alike).partition(|file| ending(file) == ending(found));
         same_ending.first().or(other.first()).map(|file| (*file).clone())
+    }
+}
+
+/// A remark on the unit of a field that was written with another one: as it stands, its number would be another amount.
+fn other_unit(found: &str, meant: &str) -> &'static str {
+    let stem = without_unit(meant);
+    match (found.strip_prefix(stem), meant.strip_prefix(stem)) {
+        (Some(written), Some("_n")) if written.starts_with('_') => ", in N",
+        (Some(written), Some("_mm")) if written.starts_with('_') => ", in mm",
+        _ => "",
     }
 }
 

@@ -22,7 +22,5 @@ pub fn starts_off(program: &Program) -> Option<String> {
     let (starts, it) =
         if titles.len() == 1 { ("starts", "it".to_owned()) } else { ("start", format!("layer {number}")) };
     let layers = listed_briefly(&fold_copies(&titles));
-    Some(format!(
-        "{layers} {starts} off: `echo trigger {number} 10000 | frixel play SCENE --control` plays {it} for 10 s"
-    ))
+    Some(format!("{layers} {starts} off: `echo trigger {number} 10000 | frixel play SCENE --control` plays {it}"))
 }

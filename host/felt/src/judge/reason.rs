@@ -90,6 +90,7 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps })
         }
         Verdict::Felt => is_buzz(felt).then_some(Reason::Buzz),
+        // A larger element would be felt. A vibration has no size.
         _ if !felt.is_vibration && faultless.verdict() == Verdict::Felt => {
             let surest = faultless.steps().max_by(Step::cmp_felt).unwrap_or(faultless.contrast);
             Some(Reason::TooSmall { limit: SizeLimit::TouchSource, weber_steps: steps(&surest) })

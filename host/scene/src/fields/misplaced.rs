@@ -138,8 +138,8 @@ pub(super) fn explained(text: &str, offset: usize, reason: &str) -> (usize, Stri
     // A byte order mark begins many files.
     match invisible(line).filter(|(place, _)| line_start + place > 0) {
         Some((place, said)) => (line_start + place, said),
-        None => match value_at(line, offset - line_start).filter(|value| has_unit(value)) {
-            Some(value) => (offset, format!("`{}` is not a number; {UNIT_ADVICE}", brief(value))),
+        None => match value_at(line, offset - line_start).and_then(no_number) {
+            Some(said) => (offset, said),
             None => (offset, format!("{reason}{}", syntax_hint(text, offset, line_start, line.trim()))),
         },
     }
@@ -188,8 +188,6 @@ fn syntax_hint(text: &str, offset: usize, line_start: usize, line: &str) -> Stri
         "; write `[[layer]]`, in double brackets, before the fields of each layer".to_owned()
     } else if value.is_some_and(|value| value.starts_with(CURLY_QUOTES)) {
         "; quotation marks are straight: \"".to_owned()
-    } else if let Some(percent) = value.and_then(percent) {
-        format!("; write the part as a number: {}", digits(percent / 100.0, f64::round))
     } else if value.is_some_and(|value| value.contains('\\'))
         && text.get(line_start..offset + 1).is_some_and(|part| part.contains('\\'))
     {
@@ -224,7 +222,13 @@ fn are_bare_words(value: &str) -> bool {
     value.starts_with(char::is_alphabetic) && value.chars().all(is_of_words)
 }
 
-/// The number of a value with a percent sign.
-fn percent(value: &str) -> Option<f64> {
-    value.strip_suffix('%')?.trim().parse().ok()
+/// What is wrong with a number that has a unit or a percent sign behind it.
+fn no_number(value: &str) -> Option<String> {
+    let advice = if has_unit(value) {
+        UNIT_ADVICE.to_owned()
+    } else {
+        let percent: f64 = value.strip_suffix('%')?.trim().parse().ok()?;
+        format!("write the part as a number: {}", digits(percent / 100.0, f64::round))
+    };
+    Some(format!("`{}` is no number; {advice}", brief(value)))
 }
