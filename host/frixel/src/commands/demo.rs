@@ -15,8 +15,8 @@ pub(super) const SCENE: &str = include_str!("../../scenes/brick.toml");
 pub(super) const PICTURE_NAME: &str = "textures/brick.png";
 pub(super) const PICTURE: &[u8] = include_bytes!("../../scenes/brick.png");
 
-/// Folder of the results.
-const FOLDER: &str = "frixel-out";
+/// Folder of the results of commands that are given none.
+pub(super) const FOLDER: &str = "frixel-out";
 
 #[derive(Debug, Args)]
 pub(super) struct DemoArgs {
@@ -40,7 +40,7 @@ pub(super) fn run(args: &DemoArgs) -> Result<()> {
         print_line(format_args!("{place} is new: a wall of bricks, as a picture of friction"))?;
         print_line(format_args!(
             "{slides}; on mortar its friction rises by a quarter, more than two of the smallest steps that a finger \
-             feels (assumed)"
+             feels (assumed); faster fingers feel the strokes of mortar as a buzz"
         ))?;
     } else {
         print_line(format_args!("{place} plays as it is in this folder; remove it to get the bundled one back"))?;

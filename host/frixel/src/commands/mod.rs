@@ -162,28 +162,36 @@ impl Cli {
     }
 }
 
-/// Tips for likely words that are not commands, not even in a group.
-const TIPS: [(&str, &str); 3] = [
+/// Tips for likely words that are no commands, not even in a group, and for likely options that commands lack.
+const TIPS: [(&str, &str); 4] = [
+    (
+        "--scene",
+        "write the scene without an option: `frixel play SCENE`, and `--port PATH` for the board of `frixel sim`",
+    ),
     ("scenario", "write `frixel sim --scenario FILE.toml`"),
     ("scene", "write `frixel check`, `frixel preview` or `frixel schema`"),
     ("threshold", "`python -m frixel.experiment FOLDER --port PATH` finds a threshold: pip install ./host/python"),
 ];
 
-/// Adds a tip to the error of an unknown command: for `frixel info`, which lacks its group, `frixel board info`; for a
-/// file, the command that takes it.
+/// Adds a tip to the error of an unknown option or command: for `frixel info`, which lacks its group, `frixel board
+/// info`; for a file, the command or the option that takes it.
 pub(crate) fn with_tip(mut error: clap::Error) -> clap::Error {
-    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    let command = error.get(ContextKind::InvalidSubcommand);
+    let Some(ContextValue::String(found)) = command.or(error.get(ContextKind::InvalidArg)) else { return error };
+    // A second scene is not a wrong command.
+    let has_use = |kind: &FileKind| command.is_some() || *kind != FileKind::Scene;
     let cli = Cli::command();
     let has_command = |group: &&clap::Command| group.get_subcommands().any(|command| command.get_name() == found);
     let group = cli.get_subcommands().find(has_command);
     let tip = group.map(|group| format!("write `frixel {} {found}`", group.get_name())).or_else(|| {
         let tip = TIPS.into_iter().find(|(word, _)| word == found);
         let kind = || FileKind::of(&input::read_toml(Path::new(found)).ok()?);
-        tip.map(|(_, tip)| tip).or_else(|| Some(kind()?.use_of())).map(str::to_owned)
+        tip.map(|(_, tip)| tip).or_else(|| Some(kind().filter(has_use)?.use_of())).map(str::to_owned)
     });
     if let Some(tip) = tip {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         error.remove(ContextKind::SuggestedSubcommand);
+        error.remove(ContextKind::SuggestedArg);
     }
     error
 }

@@ -50,7 +50,7 @@ pub(super) fn run(args: &NewArgs) -> Result<()> {
     let (name, path) = (path.display(), quoted(&path));
     print_line(format_args!(
         "{name} is new. What will be felt, and what it costs: frixel check {path}\nHow it looks: frixel preview \
-         {path} -o map.png\nUnder a simulated finger: frixel play {path}"
+         {path}\nUnder a simulated finger: frixel play {path}"
     ))
 }
 

@@ -27,6 +27,7 @@ use clap::{Args, Command, FromArgMatches, ValueEnum};
 use crate::output::{Effects, Report};
 
 use super::argument::RARE;
+use super::demo::FOLDER;
 use super::interrupt::Interrupt;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke::{StrokeArgs, of_stroke_options};
@@ -53,7 +54,7 @@ pub(super) struct PlayArgs {
     #[arg(long, value_name = "S", value_parser = argument::seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Output folder. Replaces an earlier play there.
-    #[arg(long, default_value = "frixel-out")]
+    #[arg(long, default_value = FOLDER)]
     out: PathBuf,
     /// Also replace a play on a real board.
     #[arg(long)]

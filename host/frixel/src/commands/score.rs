@@ -14,6 +14,7 @@ use frixel_play::TO_THE_END;
 use frixel_scene::compile;
 
 use super::argument::{number, whole};
+use super::demo::FOLDER;
 use super::jobs::JobsArgs;
 use super::profiles::{ProfileArgs, TouchArgs};
 use super::stroke;
@@ -54,7 +55,7 @@ pub(super) struct ScoreArgs {
     #[arg(long)]
     ideal: bool,
     /// Folder for score.csv, score-layers.csv and score.svg.
-    #[arg(long, default_value = "frixel-out")]
+    #[arg(long, default_value = FOLDER)]
     out: PathBuf,
     /// Also print how faithfully friction was felt, with the goals of a display.
     #[arg(long)]

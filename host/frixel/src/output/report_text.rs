@@ -123,9 +123,10 @@ impl Report {
     fn felt_lines(&self) -> Vec<Line> {
         let verdicts = self.in_this_play.as_deref();
         let no_verdict = match verdicts {
-            Some([]) => Some(
+            Some([]) if self.starts_off.is_none() => Some(
                 "the finger slid on no layer for long enough while the board drove: slide over a layer, more slowly",
             ),
+            Some([]) => Some("no layer was on under the finger for long enough"),
             _ => self.no_verdict,
         };
         let no_verdict = no_verdict.map(|why| ("in this play", format!("no verdict: {why}")));
