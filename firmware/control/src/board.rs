@@ -144,13 +144,17 @@ impl Board {
     /// resistance half of it.
     pub const UNMEASURED_V_PEAK: f32 = 10.0;
 
-    /// The largest voltage that its image allows, V peak, if limits are never stored on it: there is no bring-up for a
-    /// Pico or a Pico 2 yet.
-    pub const fn never_measured_v_peak(&self) -> Option<f32> {
-        match self.kind {
-            BoardKind::Pico | BoardKind::Pico2 => Some(Self::UNMEASURED_V_PEAK),
-            _ => None,
-        }
+    /// The largest voltage that its image allows until limits are stored, V peak, if that is less than its own: behind
+    /// another resistance, and on a Pico or a Pico 2, for which there is no bring-up yet.
+    pub fn until_measured_v_peak(&self) -> Option<f32> {
+        let [ohm, built_in_ohm] =
+            [self, &Self::NUCLEO_G474RE].map(|board| board.limits.series_resistance_ohm.to_bits());
+        let is_unmeasured = match self.kind {
+            BoardKind::Pico | BoardKind::Pico2 => true,
+            BoardKind::NucleoG474re => ohm != built_in_ohm,
+            _ => false,
+        };
+        is_unmeasured.then_some(Self::UNMEASURED_V_PEAK)
     }
 
     /// The real boards with their names, the default first.

@@ -11,6 +11,7 @@ use frixel_layers::Header;
 use frixel_play::{TO_THE_END, board_costs, judge};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
 use frixel_session::store::check_touched_board;
+use frixel_wire::hello::BoardKind;
 
 use super::argument;
 use super::error::{at, of_simulation};
@@ -84,7 +85,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
 }
 
 /// The board, behind another series resistance if one is given.
-fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
+pub(super) fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
     let Some(series_kohm) = series_kohm else { return Ok(board) };
     let board = board.behind(1e3 * series_kohm as f32);
     check_touched_board(&board.limits)
@@ -94,12 +95,22 @@ fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
 
 /// The board's answer to a program within its limits.
 fn verdict(board: &Board, program: &Program) -> &'static str {
-    let allowed_v_peak = board.never_measured_v_peak().unwrap_or(f32::INFINITY);
+    let allowed_v_peak = board.until_measured_v_peak().unwrap_or(f32::INFINITY);
     if program.header.voltage_max_v_peak > allowed_v_peak {
-        "refuses it for now, and would accept it once limits are stored"
+        "accepts it once limits are stored, and refuses it until then"
     } else {
         "accepts it"
     }
+}
+
+/// The largest voltage that the board allows until limits are stored, if that is less than its own.
+pub(super) fn until_measured(board: &Board) -> Option<String> {
+    let v_peak = board.until_measured_v_peak()?;
+    let (when, page) = match board.kind {
+        BoardKind::NucleoG474re => ("until bring-up has stored limits", "hardware.md"),
+        _ => ("until limits are stored, which nothing does on this board yet,", "pico.md"),
+    };
+    Some(format!("{when} it allows {v_peak} V peak (docs/board/{page})"))
 }
 
 /// Prints what is felt of a scene that a board refuses, clamped to the board's limits.
@@ -113,12 +124,8 @@ fn print_draft(scene: &Scene, rig: &RigConfig, world: &WorldOptions) -> Result<(
 /// The board, its voltage at the scene's carrier, and the friction of the scene's finger at that voltage.
 fn board_line(board: &Board, program: &Program, verdict: &str) -> String {
     let Header { voltage_max_v_peak, voltage_max_v_rms, carrier_hz, .. } = program.header;
-    let until_measured = board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
-        format!(
-            "                   verdicts are for that voltage; limits cannot be stored on this board yet, so it allows \
-             {v_peak} V peak (docs/board/pico.md)\n"
-        )
-    });
+    let until_measured = until_measured(board)
+        .map_or_else(String::new, |said| format!("                   verdicts are for that voltage; {said}\n"));
     format!(
         "  board            {} behind {} kOhm {verdict}\n  voltage          {voltage_max_v_peak:.1} V peak, \
          {voltage_max_v_rms:.1} V rms at {carrier_hz:.0} Hz: up to {:.1} mN above natural, {} Weber steps\n{until_measured}",

@@ -14,6 +14,7 @@ use frixel_scene::Screen;
 use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
 use crate::commands::argument;
+use crate::commands::check::{behind, until_measured};
 use crate::commands::terminal::print;
 use crate::scene_file;
 
@@ -54,8 +55,8 @@ pub(in crate::commands) struct SafetyArgs {
 
 pub(super) fn run(args: &SafetyArgs) -> Result<()> {
     let gap_m = scene_file::profile::<Screen>(&args.screen)?.coating_gap_m();
-    let board = args.board;
-    let series_ohm = args.series_kohm.map_or(f64::from(board.limits.series_resistance_ohm), |kohm| 1e3 * kohm);
+    let board = behind(args.board, args.series_kohm)?;
+    let series_ohm = f64::from(board.limits.series_resistance_ohm);
     let table = Table { board, series_ohm, capacitance_f: VACUUM_PERMITTIVITY_F_PER_M * CONTACT_M2 / gap_m };
     print(format!(
         "{}\n{}\n{}\n{}\n{}",
@@ -80,17 +81,30 @@ impl Table {
         TouchPath { series_ohm: self.series_ohm, coating }
     }
 
+    /// The bound, rounded down as scenes are compiled for it.
     fn bound_v_peak(&self, carrier_hz: f64) -> f64 {
-        f64::from(TouchBound::behind(self.series_ohm as f32).voltage_max_v_peak(carrier_hz as f32))
+        let bound_v_peak = TouchBound::behind(self.series_ohm as f32).voltage_max_v_peak(carrier_hz as f32);
+        (10.0 * f64::from(bound_v_peak)).floor() / 10.0
     }
 
     fn assumptions(&self, args: &SafetyArgs) -> String {
         let Self { board, series_ohm, capacitance_f } = self;
         let limits = &board.limits;
+        let until_measured = until_measured(board).map_or_else(String::new, |said| format!("; {said}"));
+        let capacitance_max_f = f64::from(limits.electrode_capacitance_max_f);
+        // A hundredth is within the error of a capacitance meter.
+        let too_thin = if *capacitance_f > 1.01 * capacitance_max_f {
+            format!(
+                ", above the {:.2} nF of the board's edges: it fails the coating test (docs/board/safety.md)",
+                1e9 * capacitance_max_f
+            )
+        } else {
+            String::new()
+        };
         [
-            ("board", format!("{}, at most {} V peak{}", board.kind, limits.voltage_max_v_peak, self.until_measured())),
-            ("series", format!("{} kOhm between amplifier and electrode{}", 1e-3 * series_ohm, self.not_built())),
-            ("screen", format!("{}: {:.2} nF to a fingertip of 2 cm2", args.screen, 1e9 * capacitance_f)),
+            ("board", format!("{}, at most {} V peak{until_measured}", board.kind, limits.voltage_max_v_peak)),
+            ("series", format!("{} kOhm between amplifier and electrode", 1e-3 * series_ohm)),
+            ("screen", format!("{}: {:.2} nF to a fingertip of 2 cm2{too_thin}", args.screen, 1e9 * capacitance_f)),
             (
                 "person",
                 "500 Ohm, and 1.5 kOhm beside 0.22 uF for the skin; currents are weighted for perception and reaction \
@@ -117,19 +131,6 @@ impl Table {
         .fold(String::new(), |text, (name, value)| text + &format!("{name:8} {value}\n"))
     }
 
-    /// A note on what the board's own image allows, if that is less.
-    fn until_measured(&self) -> String {
-        self.board.never_measured_v_peak().map_or_else(String::new, |v_peak| {
-            format!(" once limits are stored; nothing stores them on this board yet, and it allows {v_peak} V peak")
-        })
-    }
-
-    /// A note on a series resistance that no firmware can be built for.
-    fn not_built(&self) -> String {
-        let refusal = self.check_built(self.series_ohm).err();
-        refusal.map_or_else(String::new, |error| format!("; no firmware accepts that: {error}"))
-    }
-
     fn check_built(&self, series_ohm: f64) -> Result<(), LimitsError> {
         check_touched_board(&self.board.behind(series_ohm as f32).limits)
     }
@@ -152,8 +153,8 @@ impl Table {
         for carrier_hz in self.carriers_hz() {
             let worst = TouchPath::worst_coating(self.series_ohm, carrier_hz);
             let bound_v_peak = self.bound_v_peak(carrier_hz);
-            let drives = [("bound", bound_v_peak), ("", largest_v_peak)];
-            for (name, drive_v_peak) in drives.into_iter().take(if bound_v_peak < largest_v_peak { 2 } else { 1 }) {
+            let bound = Some(("bound", bound_v_peak)).filter(|_| bound_v_peak < largest_v_peak);
+            for (name, drive_v_peak) in bound.into_iter().chain([("", largest_v_peak)]) {
                 let cells = [self.path(intact), self.path(scratched), self.path(Coating::Bridged), worst].map(|path| {
                     format!(
                         "{:.2} {:.2}",
@@ -178,7 +179,8 @@ impl Table {
 
     /// Currents of single faults beside a bridged coating.
     fn faults(&self) -> String {
-        let rail_v = f64::from(RAIL_MAX * self.board.limits.full_scale_v_peak);
+        let full_scale_v = f64::from(self.board.limits.full_scale_v_peak);
+        let rail_v = f64::from(RAIL_MAX) * full_scale_v;
         let (usual_hz, direct_hz) = (1_000.0, 1.0);
         let bridged = |series_ohm: f64, drive_v_peak: f64, carrier_hz: f64| {
             let path = TouchPath { series_ohm, coating: Coating::Bridged };
@@ -189,7 +191,7 @@ impl Table {
              bound at 1 kHz\n{:.2}  the amplifier stuck at a rail of {rail_v:.0} V\n{:.2}  both (the amplifier's own \
              current limit is the hardware for it)\n",
             1e3 * SINGLE_FAULT_CURRENT_MAX_A_PEAK,
-            bridged(0.5 * self.series_ohm, self.bound_v_peak(usual_hz), usual_hz),
+            bridged(0.5 * self.series_ohm, self.bound_v_peak(usual_hz).min(full_scale_v), usual_hz),
             bridged(self.series_ohm, rail_v, direct_hz),
             bridged(0.5 * self.series_ohm, rail_v, direct_hz),
         )

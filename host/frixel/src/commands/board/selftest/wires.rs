@@ -1,6 +1,6 @@
 //! The host's side of a board's self-test: answers the script, tests the line, and writes the report.
 
-use std::io;
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -39,7 +39,8 @@ const PROMPT: &str = "Then type: ";
 
 /// Runs the self-test of the board at a port.
 pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Result<()> {
-    let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())).transpose()?;
+    // A folder that is missing is found before the test, not after it.
+    let output = output.map(|path| OutputFile::new(path, "-o", &Inputs::default())?.create()).transpose()?;
     let link = port::open(port, &[])?;
     let mut host = Host { link, received: Vec::new(), report: Report::new(), line_seconds, line_was_tested: false };
     if line_seconds > 0 {
@@ -50,8 +51,12 @@ pub(super) fn run(port: &str, line_seconds: u32, output: Option<&Path>) -> Resul
     for line in report.of_line() {
         print_line(line)?;
     }
-    if let Some(output) = output {
-        output.write(&report.to_json().map_err(|error| writing(output.path())(error.into()))?)?;
+    if let Some(mut output) = output {
+        let json = report.to_json().map_err(|error| writing(output.path())(error.into()))?;
+        output.write_all(&json)?;
+        let path = output.path().to_owned();
+        output.commit()?;
+        print_line(format_args!("wrote {}", path.display()))?;
     }
     ended?;
     match (report.stopped(), report.failed()) {
