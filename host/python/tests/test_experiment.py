@@ -48,6 +48,13 @@ def test_every_level_of_constant_stimuli_comes_once_in_each_round() -> None:
     assert len({tuple(levels[start : start + 3]) for start in range(0, 12, 3)}) > 1
 
 
+@pytest.mark.parametrize("levels", [[[0.1, 0.2], [0.1, 0.3]], 0.1, []])
+def test_levels_are_a_list(levels: Any) -> None:
+    for make in (lambda: QuestPlus(levels, TWO_ALTERNATIVES, trials=5), lambda: ConstantStimuli(levels, 5)):
+        with pytest.raises(ParameterError, match="levels must be a list of 1 to 1000 numbers, but is"):
+            make()
+
+
 def test_a_staircase_goes_down_after_so_many_right_answers_and_up_after_a_wrong_one() -> None:
     method = UpDown(0.8, trials=20, down=3, step=1.25)
     levels = []
@@ -201,9 +208,9 @@ def test_every_method_takes_levels_of_any_unit() -> None:
 
 @pytest.mark.parametrize("answer", ["False", "0", -1, 0, 1, 1.0, None])
 def test_an_answer_is_true_or_false(answer: Any) -> None:
-    with pytest.raises(ParameterError, match="correct is True or False, found"):
+    with pytest.raises(ParameterError, match="correct must be True or False, but is"):
         Answers([(0.2, answer)])
-    with pytest.raises(ParameterError, match="correct is True or False, found"):
+    with pytest.raises(ParameterError, match="correct must be True or False, but is"):
         UpDown(0.5, trials=3).answer(0.5, answer)
     assert Answers([(0.2, np.bool_(True)), (0.2, np.False_)]).table == [(0.2, 1, 2)]
 
@@ -251,8 +258,13 @@ def test_the_threshold_of_an_observer_is_where_its_answers_say() -> None:
         share = observer.correct_share(observer.threshold(task), task)
         assert share == pytest.approx(guess + (1 - guess) * (1 - math.exp(-1)))
     assert math.isnan(observer.threshold(task)) is False
-    with pytest.raises(ValueError, match="noise is a number above 0, or infinite, found 0"):
+    with pytest.raises(ValueError, match=r"noise must be above 0 and at most 1 \(.*\), or infinite, but is 0"):
         Observer(0.0)
+    with pytest.raises(ParameterError, match="or infinite, but is 6"):
+        Observer(6)
+    for felt_n in (0.0, math.nan):
+        with pytest.raises(ParameterError, match="second_n must be a number above 0, but is"):
+            observer.stronger(0.3, felt_n)
 
 
 def test_an_exponent_is_recovered_with_its_interval() -> None:

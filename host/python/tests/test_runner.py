@@ -35,6 +35,7 @@ def test_the_threshold_of_a_simulated_observer_is_found(method: str, tmp_path: P
     low, high = map(float, re.findall(r"threshold +\S+ V rms \((\S+) to (\S+)\)", run.stdout)[0])
     (truth,) = re.findall(r"observer +has a threshold of (\S+) V rms", run.stdout)
     assert low < float(truth) < high < 150
+    assert re.search(r", of 40 trials and \d+ checks?$", run.stdout, re.MULTILINE)
     finger = Finger.load(tmp_path / "s/finger.toml")
     assert finger.text is not None
     assert "simulated observer 7" in finger.text
@@ -55,7 +56,7 @@ def test_answers_through_a_pipe_are_kept_and_a_session_that_was_cut_off_goes_on(
     kept = rows(folder)
     assert [row["response"] for row in kept] == [0, 1]
     other = ran(folder, *ON_BOARD, "--voltage", 100)
-    assert "belongs to another session" in other.stderr
+    assert "belongs to another session: played differs in --voltage: give" in other.stderr
     simulated = ran(folder, "--observer", 3, "--trials", 12)
     assert "belongs to another session" in simulated.stderr, "no simulated answer is among those of a person"
     # Who always says 1 is right in half of the trials.

@@ -19,15 +19,18 @@ import pyarrow.parquet as parquet
 import pytest
 from frixel import Device, ParameterError, PlayError, Recording, Scene, Simulator, Stroke
 from frixel.experiment import (
+    SAME_DIFFERENT,
     TWO_ALTERNATIVES,
     Answers,
     ConstantStimuli,
     ExperimentError,
     Grid,
+    Method,
     Observer,
     QuestPlus,
     Session,
     Trial,
+    UpDown,
     _session,
 )
 from frixel.experiment.coverage import LEVELS
@@ -98,14 +101,14 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"participant": "p02"}, "participant is 'p01' there, and 'p02' here"),
         ({"seed": 8}, "seed is 7 there"),
-        ({"played": {"bars.toml": "version = 1\n# other\n"}}, "played is"),
-        ({"task": "2afc"}, "a task is TWO_ALTERNATIVES or SAME_DIFFERENT, found '2afc'"),
+        ({"played": {"bars.toml": "version = 1\n# other\n"}}, "session: played differs in bars.toml: give"),
+        ({"task": "2afc"}, "a task must be TWO_ALTERNATIVES or SAME_DIFFERENT, but is '2afc'"),
     ]
     for changed, said in wrong:
         with pytest.raises((ExperimentError, ParameterError), match=said):
             opened(tmp_path, **changed)
     values: list[tuple[dict[str, Any], str]] = [
-        ({"seed": "7"}, "seed is a whole number from 0"),
+        ({"seed": "7"}, "seed must be a whole number from 0"),
         ({"participant": "Jane Doe"}, r"use a code of 1 to 32 letters, digits, -, _ and \., not a name"),
         ({"participant": 7}, "participant 7: give a code"),
     ]
@@ -132,9 +135,35 @@ def test_another_method_is_not_gone_on_with(tmp_path: Path) -> None:
         session.run(ConstantStimuli([0.3, 0.4], 2), lambda trial: None, lambda trial: 0)
 
 
+def test_a_method_presents_its_trials_in_one_run(tmp_path: Path) -> None:
+    methods: list[Method] = [
+        ConstantStimuli([0.1], 2),
+        UpDown(0.1, trials=2),
+        QuestPlus([0.1, 0.2], TWO_ALTERNATIVES, trials=2),
+    ]
+    for number, method in enumerate(methods):
+        with opened(tmp_path / f"{number}") as session:
+            assert len(session.run(method, lambda trial: None, lambda trial: 0)) == 2
+            with pytest.raises(ParameterError, match="another run: make a new one for each `run`"):
+                session.run(method, lambda trial: None, lambda trial: 0)
+        with opened(tmp_path / f"next-{number}") as session:
+            with pytest.raises(ParameterError, match="another run: make a new one for each `run`"):
+                session.run(method, lambda trial: None, lambda trial: 0)
+            assert session.rows == []
+
+
+def test_a_method_is_for_the_task_of_its_session(tmp_path: Path) -> None:
+    with opened(tmp_path) as session:
+        method = QuestPlus([0.1, 0.2], SAME_DIFFERENT, trials=2)
+        said = "the method is for the task same-different, and the session for 2afc: give both"
+        with pytest.raises(ParameterError, match=said):
+            session.run(method, lambda trial: None, lambda trial: 0)
+        assert session.rows == []
+
+
 def test_an_answer_that_is_none_is_refused(tmp_path: Path) -> None:
     for answer in (2, True, np.bool_(False)):
-        said = re.escape(f"an answer is 0 or 1, and this one is {answer!r}")
+        said = re.escape(f"an answer must be 0 or 1, but is {answer!r}: write int(...)")
         with opened(tmp_path) as session, pytest.raises(ExperimentError, match=said):
             session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial, answer=answer: answer)  # type: ignore[misc]
     assert not (tmp_path / "trials.jsonl").exists()
@@ -283,7 +312,7 @@ def test_every_play_is_recorded_and_a_trial_is_replayed_bit_for_bit(tmp_path: Pa
         assert session.replay(2) == 2
         with pytest.raises(ExperimentError, match="trial 4 is not answered: there are 4"):
             session.replay(4)
-        with pytest.raises(ParameterError, match="number is a whole number from 0"):
+        with pytest.raises(ParameterError, match="number must be a whole number from 0"):
             session.replay(-1)
     recording = tmp_path / rows[0]["plays"][0]["recording"]
     command = subprocess.run([os.environ["FRIXEL"], "replay", recording], capture_output=True, text=True, check=True)
@@ -341,7 +370,7 @@ def test_a_recording_that_was_changed_is_not_replayed(tmp_path: Path) -> None:
 
 def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
     with opened(tmp_path) as session, Device.open("sim") as device:
-        with pytest.raises(ParameterError, match=r"a board from Device\.open, found 'sim'"):
+        with pytest.raises(ParameterError, match=r"a board from Device\.open, but is 'sim'"):
             session.play(plates(0.1), on="sim", seconds=1)  # type: ignore[arg-type]
         with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
             session.play(plates(0.1), on=device)
@@ -361,7 +390,7 @@ def test_a_play_for_less_than_no_time_is_refused_before_it_begins(tmp_path: Path
         opened(tmp_path, on_marker=lambda marker, trial: markers.append(marker)) as session,
         Device.open("sim") as device,
     ):
-        with pytest.raises(ParameterError, match=r"seconds is a number from 0\.001"):
+        with pytest.raises(ParameterError, match=r"seconds must be a number from 0\.001"):
             session.run(
                 ConstantStimuli([0.1], 1),
                 lambda trial: session.play(plates(0.1), on=device, seconds=-1),

@@ -163,7 +163,13 @@ def experiment(arguments: argparse.Namespace) -> None:
     if (arguments.port is None) == (arguments.observer is None):
         raise ParameterError("give --port PATH, or --observer SEED for a simulated observer, who needs no board")
     observer = None if arguments.observer is None else observer_of(arguments.observer)
-    settings = [arguments.method, trials, highest, arguments.observer, arguments.screen]
+    settings = {
+        "--method": arguments.method,
+        "--trials": trials,
+        "--voltage": highest,
+        "--observer": arguments.observer,
+        "--screen": arguments.screen,
+    }
     with contextlib.ExitStack() as stack:
         board = None
         if observer is None:
@@ -177,7 +183,7 @@ def experiment(arguments: argparse.Namespace) -> None:
                 arguments.participant,
                 TWO_ALTERNATIVES,
                 seed=arguments.seed,
-                played={"settings": json.dumps(settings)},
+                played={option: json.dumps(value) for option, value in settings.items()},
             )
         )
         if session.rows:
@@ -197,10 +203,12 @@ def experiment(arguments: argparse.Namespace) -> None:
         answers, found = ask(session, method_of(arguments.method, trials), play, answer)
     if found.threshold is None or found.interval is None:
         raise ExperimentError(str(found))
+    checks = len(answers) - trials
+    counted = f"{trials} trials and {checks} check{'s' * (checks != 1)}"
     low, threshold, high = (
         float(volts) for volts in detection.voltage_of([found.interval[0], found.threshold, found.interval[1]], highest)
     )
-    say(f"\n  threshold        {threshold:.1f} V rms ({low:.1f} to {high:.1f}), of {len(answers)} trials")
+    say(f"\n  threshold        {threshold:.1f} V rms ({low:.1f} to {high:.1f}), of {counted}")
     who = ""
     if observer is not None:
         truth = float(detection.voltage_of(observer.threshold(TWO_ALTERNATIVES), highest))
@@ -211,7 +219,7 @@ def experiment(arguments: argparse.Namespace) -> None:
     finger = detection.perceptual_finger(
         threshold,
         (low, high),
-        method=f"two alternatives, {name}, {len(answers)} trials, {detection.STIMULUS_HZ:.0f} Hz{who}",
+        method=f"two alternatives, {name}, {counted}, {detection.STIMULUS_HZ:.0f} Hz{who}",
         screen=arguments.screen,
     )
     path = arguments.folder / "finger.toml"

@@ -144,11 +144,14 @@ class Folder:
             raise ExperimentError(f"{path.name} is not a manifest ({error}): give another folder") from error
         for name, value in manifest.items():
             found = earlier.get(name) if isinstance(earlier, dict) else None
-            if found != value:
-                raise ExperimentError(
-                    f"this folder belongs to another session: {name} is {found!r} there, and {value!r} here: "
-                    "give another folder"
-                )
+            if found == value:
+                continue
+            differs = f"{name} is {found!r} there, and {value!r} here"
+            if isinstance(found, dict) and isinstance(value, dict):
+                # The values are hashes.
+                keys = [key for key in {**found, **value} if found.get(key) != value.get(key)]
+                differs = f"{name} differs in {', '.join(keys)}"
+            raise ExperimentError(f"this folder belongs to another session: {differs}: give another folder")
         return {RECORDINGS: {}, **earlier}
 
     def _write_manifest(self, manifest: dict[str, Any]) -> None:

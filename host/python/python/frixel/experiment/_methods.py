@@ -104,7 +104,7 @@ class QuestPlus:
 
     def __init__(self, levels: ArrayLike, task: Task, *, trials: int, grid: Grid | None = None) -> None:
         self._levels = _levels(levels)
-        self._task, self._grid = checked_task(task), Grid.around(self._levels) if grid is None else checked_grid(grid)
+        self.task, self._grid = checked_task(task), Grid.around(self._levels) if grid is None else checked_grid(grid)
         self._left = whole("trials", trials, 1, TRIALS_MAX)
         self._correct = np.stack([self._grid.correct(level, task).ravel() for level in self._levels])
         self._wrong = 1.0 - self._correct
@@ -116,7 +116,7 @@ class QuestPlus:
     @property
     def posterior(self) -> Array:
         """Probability of each combination of the grid's parameters, as :meth:`Grid.correct`."""
-        return self._posterior.reshape(self._grid.correct(0.0, self._task).shape)
+        return self._posterior.reshape(self._grid.correct(0.0, self.task).shape)
 
     def next_level(self) -> float | None:
         """The level of the next trial; ``None`` after the last one."""
@@ -145,10 +145,10 @@ class QuestPlus:
 
 
 def _levels(levels: ArrayLike) -> list[float]:
-    found = [checked_level(float(level)) for level in np.ravel(array("levels", levels))]
-    if not 1 <= len(found) <= LEVELS_MAX:
-        raise refusal("levels", f"1 to {LEVELS_MAX} numbers", levels)
-    return found
+    found = array("levels", levels)
+    if found.ndim != 1 or not 1 <= found.size <= LEVELS_MAX:
+        raise refusal("levels", f"a list of 1 to {LEVELS_MAX} numbers", levels)
+    return [checked_level(float(level)) for level in found]
 
 
 def _times_log(share: Array) -> Array:

@@ -7,7 +7,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from .._arguments import number, real, refusal, whole
+from .._arguments import number, positive, real, refusal, whole
 from ._psychometric import SAME_DIFFERENT, Task, checked_level, checked_task
 
 
@@ -23,9 +23,10 @@ class Observer:
     """
 
     def __init__(self, noise: float, *, lapse: float = 0.02, criterion: float = 1.5, seed: int = 0) -> None:
-        self._noise = real("noise", noise, "a number above 0, or infinite")
-        if not self._noise > 0.0:
-            raise refusal("noise", "a number above 0, or infinite", noise)
+        expected = "above 0 and at most 1 (0.06 is 6 %), or infinite"
+        self._noise = real("noise", noise, expected)
+        if not (0.0 < self._noise <= 1.0 or self._noise == math.inf):
+            raise refusal("noise", expected, noise)
         self._lapse = number("lapse", lapse, 0.0, 0.99)
         self._criterion = number("criterion", criterion, 0.0, 100.0)
         self._seed = whole("seed", seed, 0)
@@ -33,7 +34,7 @@ class Observer:
 
     def stronger(self, first_n: float, second_n: float, *, trial: int | None = None) -> int:
         """Index, 0 or 1, of the friction that the observer calls stronger, of two in any one unit."""
-        frictions = [number(name, value, 1e-300) for name, value in (("first_n", first_n), ("second_n", second_n))]
+        frictions = [positive(name, value) for name, value in (("first_n", first_n), ("second_n", second_n))]
         rng = self._noise_of(trial)
         if rng.random() < self._lapse:
             return int(rng.integers(2))

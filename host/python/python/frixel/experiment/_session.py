@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -22,13 +23,15 @@ from ..scene import Scene
 from ..simulator import Simulator
 from ._estimate import Answers, Estimate, estimate
 from ._folder import ExperimentError, Folder, sha256
-from ._methods import Method
+from ._methods import Method, QuestPlus
 from ._psychometric import Task, checked_level, checked_task
 
 FORMAT = 1
 KEPT_MAX_BYTES = 256 << 20
 """Largest number of bytes of simulated recordings that are kept for the same play in the same run."""
 _LOG = logging.getLogger("frixel.experiment")
+_RUN: WeakValueDictionary[int, Method] = WeakValueDictionary()
+"""The methods that a run has taken, by identity: a method need not be hashable."""
 
 
 @dataclass(frozen=True)
@@ -181,8 +184,8 @@ class Session:
             raise ParameterError("a play on a board accepts `seconds`, but no settings of the simulator")
         if self._trial_now is None:
             raise ExperimentError(
-                "no trial is running that this play could belong to: call it within `play` or `answer` of `run`, or use "
-                "Simulator or Device.record"
+                "no trial is running that this play could belong to: call it within `play` or `answer` of `run`, or "
+                "use Simulator or Device.record"
             )
         began_s = self._now_s()
 
@@ -234,7 +237,7 @@ class Session:
         has levels of trials before the first one, whose answers do not count. After every ``catch_every`` trials of the
         method, a trial at level 0 follows. ``on_break`` is called with the number of trials so far, after every
         ``break_every``. An exception in ``on_break``, ``play`` or ``answer`` ends the run; the same program resumes
-        there when it opens the session again.
+        there when it opens the session again. Each run needs a new ``method``.
         """
         for name, act in {
             "play": play,
@@ -251,6 +254,16 @@ class Session:
             raise refusal("method", "a Method, such as QuestPlus", method)
         if self._is_cut_off:
             raise ExperimentError("the previous run was cut off: open the session again to resume it there")
+        if isinstance(method, QuestPlus) and method.task != self._task:
+            raise ParameterError(
+                f"the method is for the task {method.task.name}, and the session for {self._task.name}: give both the "
+                "same task"
+            )
+        if id(method) in _RUN:
+            raise ParameterError("this method has presented trials in another run: make a new one for each `run`")
+        # A class of one's own may have slots, without one for weak references.
+        with suppress(TypeError):
+            _RUN[id(method)] = method
         self._is_cut_off = True
         answers = Answers()
         for practised in practised_levels:
@@ -307,7 +320,10 @@ class Session:
             is_same_different = self._task.name == "same-different"
             # A bool would mean "correct", not a presentation.
             if response not in (0, 1) or (isinstance(response, (bool, np.bool_)) and not is_same_different):
-                raise ExperimentError(f"trial {number}: an answer is 0 or 1, and this one is {response!r}")
+                raise ExperimentError(
+                    f"trial {number}: an answer must be 0 or 1, but is {response!r}: write int(...) if True means the "
+                    "second presentation"
+                )
             times = {"played_s": played_s, "presented_s": presented_s, "answered_s": answered_s}
             correct = bool(response == (1 if is_same_different else target))
             answered = {"response": int(response), "correct": correct, "run": self._run, "plays": self._kept_plays()}
