@@ -229,19 +229,26 @@ def test_every_public_function_refuses_wrong_values_by_a_frixel_error(
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda: Scene.parse(None), "text is a text, found None"),  # type: ignore[arg-type]
+        (lambda: Scene.parse(None), "text must be a string, but is None"),  # type: ignore[arg-type]
         (
             lambda: Contact(radius_m="8mm", stiffness_pa_per_m=1e7, friction_coefficient=0.5, gap_m=1e-5),  # type: ignore[arg-type]
-            "radius_m is a number, found '8mm'",
+            "radius_m must be a number, but is '8mm'",
         ),
-        (lambda: asked.UpDown(0, trials=5), "start is a number from 1e-100 to 1e+100, found 0"),
-        (lambda: Simulator(PLATE, ideal="no"), "ideal is True or False, found 'no'"),  # type: ignore[arg-type]
-        (lambda: Device.open("sim", arm="no"), "arm is True or False, found 'no'"),  # type: ignore[arg-type]
-        (lambda: frixel.model.eval("finger", 1.0), "contact is a Contact or a SoftContact, found 'finger'"),  # type: ignore[arg-type]
+        (lambda: asked.UpDown(0, trials=5), "start must be a number from 1e-100 to 1e+100, but is 0"),
+        (lambda: Simulator(PLATE, ideal="no"), "ideal must be True or False, but is 'no'"),  # type: ignore[arg-type]
+        (lambda: Device.open("sim", arm="no"), "arm must be True or False, but is 'no'"),  # type: ignore[arg-type]
+        (lambda: frixel.model.eval("finger", 1.0), "contact must be a Contact or a SoftContact, but is 'finger'"),  # type: ignore[arg-type]
         (
             lambda: frixel.model.eval(CONTACT, ["1", "2"]),
-            "voltage_v_rms is numbers in an array or a list, found ['1', '2']",
+            "voltage_v_rms must be numbers in an array or a list, but is ['1', '2']",
         ),
+        (
+            lambda: frixel.model.eval(CONTACT, np.ma.array([50.0, 60.0], mask=[False, True])),
+            "voltage_v_rms has masked elements: leave them out",
+        ),
+        (lambda: frixel.model.eval(CONTACT, [50, np.nan]), "voltage_v_rms[1] must be finite, but is nan"),
+        (lambda: frixel.model.eval(CONTACT, 50, [[0.5], [np.inf]]), "normal_load_n[1, 0] must be finite, but is inf"),
+        (lambda: frixel.model.invert(CONTACT, np.nan), "friction_n must be finite, but is nan"),
         (
             lambda: frixel.model.eval(CONTACT, [1, 2], [1, 2, 3]),
             "voltage_v_rms has the shape (2,) and normal_load_n has the shape (3,), which do not broadcast: give one "
@@ -252,7 +259,7 @@ def test_every_public_function_refuses_wrong_values_by_a_frixel_error(
             "a cell has no 'sed': its keys are Simulator's arguments and `seconds`",
         ),
         (lambda: frixel.run({"seconds": 0.1}), "a cell lacks `scene`: give a Scene or its tables"),
-        (lambda: Scene.load("x" * 100 + "\0"), "path is a path, found '" + "x" * 62 + "…"),
+        (lambda: Scene.load("x" * 100 + "\0"), "path must be a path, but is '" + "x" * 62 + "…"),
     ],
 )
 def test_a_refusal_names_the_argument(call: Callable[[], object], sentence: str) -> None:

@@ -165,7 +165,7 @@ def test_what_is_not_taken_changes_nothing() -> None:
         with pytest.raises(ParameterError, match="`on` or `gain` changes a layer"):
             device.set_layer("base")
         for gain in (float("nan"), 1e3, "loud"):
-            with pytest.raises(ParameterError, match="gain is a number from -100 to 100"):
+            with pytest.raises(ParameterError, match="gain must be a number from -100 to 100"):
                 device.set_layer("base", gain=gain)  # type: ignore[arg-type]
         with pytest.raises(ParameterError, match=r"set_layer\(\"base\", on=False\)"):
             device.trigger("base")
@@ -178,11 +178,11 @@ def test_what_is_not_taken_changes_nothing() -> None:
         for samples in ([], [[0.5]], [2.0], [float("nan")]):
             with pytest.raises(ParameterError, match="sample"):
                 device.stream(samples, 1000)
-        with pytest.raises(ParameterError, match="sample_hz is a whole number from 1 to 40000"):
+        with pytest.raises(ParameterError, match="sample_hz must be a whole number from 1 to 40000"):
             device.stream([0.5], 50_000)
         with pytest.raises(ParameterError, match="messages_per_s"):
             device.telemetry(messages_per_s=0)
-        with pytest.raises(ParameterError, match="seconds is a number"):
+        with pytest.raises(ParameterError, match="seconds must be a number"):
             device.wait(-1)
         assert commanded_electric_n(device) == before
 
@@ -244,8 +244,8 @@ def virtual_board(tmp_path: Path) -> Iterator[VirtualBoard]:
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"seconds": -1}, "seconds is a number from 0.001 to 86400, found -1"),
-        ({"seconds": 1, "messages_per_s": 0}, "messages_per_s is a whole number from 1 to 1000, found 0"),
+        ({"seconds": -1}, "seconds must be a number from 0.001 to 86400, but is -1"),
+        ({"seconds": 1, "messages_per_s": 0}, "messages_per_s must be a whole number from 1 to 1000, but is 0"),
     ],
 )
 def test_a_record_with_a_wrong_value_plays_nothing(settings: dict[str, Any], sentence: str) -> None:

@@ -69,7 +69,7 @@ def test_data_that_give_no_finger_are_refused() -> None:
         fit({})
     with pytest.raises(ParameterError, match="columns must have the same length, found"):
         fit({**data, "friction_n": data["friction_n"][1:]})
-    with pytest.raises(ParameterError, match="found 'power'"):
+    with pytest.raises(ParameterError, match="must be 'contact' or 'empirical', but is 'power'"):
         fit(data, law="power")  # type: ignore[arg-type]
 
 

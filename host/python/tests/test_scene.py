@@ -84,7 +84,7 @@ def test_tables_make_a_scene() -> None:
     assert 'say "hü"' in scene.layers[0]
     with pytest.raises(SceneError, match="contains a control or invisible character"):
         Scene.from_dict({"layer": [{"kind": "constant", "friction_n": 0.26, "name": "\n\x7f\\"}]})
-    with pytest.raises(ParameterError, match="a field is a text, a number, a list or a table, found None"):
+    with pytest.raises(ParameterError, match="a field must be a string, a number, a list or a table, but is None"):
         Scene.from_dict({"layer": [{"kind": None}]})
     with pytest.raises(SceneError) as caught:
         Scene.from_dict({"layer": [{"kind": "constant", "frictio_n": 1}]})

@@ -70,13 +70,13 @@ def test_a_score_is_data_that_can_be_sent_elsewhere() -> None:
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"people": 0}, "people is a whole number from 1 to 1000, found 0"),
-        ({"strokes": 1.5}, "strokes is a whole number from 1 to 1000, found 1.5"),
-        ({"seconds": 0}, "seconds is a number from 0.001 to 86400, found 0"),
-        ({"median_speed_mm_per_s": "fast"}, "median_speed_mm_per_s is a number from 1 to 1000, found 'fast'"),
-        ({"jobs": 0}, "jobs is a whole number from 1 to 1000, found 0"),
-        ({"stroke": "natural"}, 'a stroke is "human", "human-rough", "sweep" or a Stroke'),
-        ({"stroke": 3}, 'a stroke is "human", "human-rough", "sweep" or a Stroke, found 3'),
+        ({"people": 0}, "people must be a whole number from 1 to 1000, but is 0"),
+        ({"strokes": 1.5}, "strokes must be a whole number from 1 to 1000, but is 1.5"),
+        ({"seconds": 0}, "seconds must be a number from 0.001 to 86400, but is 0"),
+        ({"median_speed_mm_per_s": "fast"}, "median_speed_mm_per_s must be a number from 1 to 1000, but is 'fast'"),
+        ({"jobs": 0}, "jobs must be a whole number from 1 to 1000, but is 0"),
+        ({"stroke": "natural"}, 'a stroke must be "human", "human-rough", "sweep" or a Stroke'),
+        ({"stroke": 3}, 'a stroke must be "human", "human-rough", "sweep" or a Stroke, but is 3'),
         ({"people": 1000, "seeds": 1000}, "are 4000000 plays, and at most 100000 are scored: give fewer, or split"),
         ({"people": 1000, "seconds": 600}, "are 2400000 s of strokes, and 36000 s fit into memory: give fewer or"),
         ({"stroke": "sweep", "median_speed_mm_per_s": 50}, "only human strokes have a median speed: leave it out"),
@@ -89,7 +89,7 @@ def test_what_is_not_taken_is_said(settings: dict[str, Any], sentence: str) -> N
 
 
 def test_a_scene_that_is_none_or_refused_is_said() -> None:
-    with pytest.raises(ParameterError, match=r"Scene\.load reads a file, found 'brick.toml'"):
+    with pytest.raises(ParameterError, match=r"\(Scene\.load reads a file\), but is 'brick.toml'"):
         frixel.score("brick.toml")  # type: ignore[arg-type]
     with pytest.raises(SceneError, match="40"):
         frixel.score({"layer": [{"kind": "constant", "friction_n": 40}]})

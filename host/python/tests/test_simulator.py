@@ -101,40 +101,43 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
     ("make", "sentence"),
     [
         (lambda: Simulator(FLAT, stroke=Stroke.straight((500, 20), (600, 20))).run(), "nowhere on the screen"),
-        (lambda: Stroke.straight((5, 20), (60, 20), speed_mm_s=-5), "speed_mm_s is a number above 0, found -5"),
+        (lambda: Stroke.straight((5, 20), (60, 20), speed_mm_s=-5), "speed_mm_s must be a number above 0, but is -5"),
         (
             lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (60, 20), speed_mm_s=20_000)).run(),
             "the finger slides at 20000 mm/s: give a speed above 0, at most 10000 mm/s",
         ),
-        (lambda: Stroke.straight((5, np.nan), (60, 20)), "from_mm is x and y in mm, found"),
-        (lambda: Stroke.human(1, seconds=-1), "seconds is a number above 0, found -1"),
+        (lambda: Stroke.straight((5, np.nan), (60, 20)), "from_mm must be x and y in mm, but is"),
+        (lambda: Stroke.human(1, seconds=-1), "seconds must be a number above 0, but is -1"),
         (Stroke, "a stroke is made by Stroke.straight, human or from_arrays"),
         (lambda: Simulator(FLAT, rows_per_s=7).run(1), "rows_per_s: 7 rows a second do not .*; give 5 or 8"),
         (lambda: Simulator(FLAT).run(-1), "a play lasts from one tick"),
         (lambda: Simulator(FLAT).run(float("nan")), "a play lasts from one tick"),
-        (lambda: Simulator(FLAT, stroke="human"), "a stroke is made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, stroke="human"), "a stroke must be made by Stroke.straight, human or from_arrays"),  # type: ignore[arg-type]
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1]), "arrays of one length"),
         (lambda: Stroke.from_arrays([-1, 1], [1, 2], [1, 2]), r"t_s\[0\]: -1 is below 0: give time"),
-        (lambda: Stroke.from_arrays([0, np.nan], [1, 2], [1, 2]), r"t_s\[1\] is a finite number, found nan"),
+        (lambda: Stroke.from_arrays([0, np.nan], [1, 2], [1, 2]), r"t_s\[1\] must be finite, but is nan"),
         (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, 2], [0.5, 500]), r"load_n\[1\]: 500 .* at most 50$"),
         (lambda: Simulator(FLAT, stroke=Stroke.straight((5, 20), (5, 20))).run(), "give two places that differ"),
         (lambda: Stroke.from_arrays([0, 1], [1, np.nan], [1, 2]), r"x_mm\[1\]: unknown, where y_mm is known"),
-        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, np.inf]), r"y_mm\[1\] is a finite number or NaN, found inf"),
+        (lambda: Stroke.from_arrays([0, 1], [1, 2], [1, np.inf]), r"y_mm\[1\] must be finite or NaN, but is inf"),
         (lambda: Stroke.from_arrays([0], [1], [2]), "the stroke has one row only: give at least two"),
         (lambda: Stroke.from_arrays([1, 0], [1, 2], [1, 2]), r"t_s\[1\]: 0 comes after 1"),
-        (lambda: Simulator("brick.toml"), "Scene.load reads a file, found 'brick.toml'"),  # type: ignore[arg-type]
-        (lambda: Simulator(FLAT, seed=-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
-        (lambda: Simulator(FLAT, person=1.5), "person is a whole number from 0 to 18446744073709551615, found 1.5"),  # type: ignore[arg-type]
-        (lambda: Simulator(FLAT, rows_per_s=0), "rows_per_s is a whole number from 1 to 40000, found 0"),
+        (lambda: Simulator("brick.toml"), r"\(Scene\.load reads a file\), but is 'brick.toml'"),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, seed=-1), "seed must be a whole number from 0 to 18446744073709551615, but is -1"),
+        (
+            lambda: Simulator(FLAT, person=1.5),
+            "person must be a whole number from 0 to .*, but is 1.5",
+        ),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, rows_per_s=0), "rows_per_s must be a whole number from 1 to 40000, but is 0"),
         (
             lambda: Simulator(FLAT, rows_per_s=2**40).run(1),
-            "rows_per_s is a whole number from 1 to 40000, found 1099511627776",
+            "rows_per_s must be a whole number from 1 to 40000, but is 1099511627776",
         ),
         (lambda: Simulator(FLAT, finger="me.toml"), "Finger.load reads a file"),
-        (lambda: Simulator(FLAT, finger=3), "a finger is a Finger, a name, or a table, found 3"),  # type: ignore[arg-type]
-        (lambda: Scene.from_dict(FLAT).map(0, 5), "width is a whole number from 1 to 10000, found 0"),
-        (lambda: Stroke.straight((1,), (2, 3)), "from_mm is x and y in mm"),  # type: ignore[arg-type]
-        (lambda: Stroke.human(-1), "seed is a whole number from 0 to 18446744073709551615, found -1"),
+        (lambda: Simulator(FLAT, finger=3), "a finger must be a Finger, a name, or a table, but is 3"),  # type: ignore[arg-type]
+        (lambda: Scene.from_dict(FLAT).map(0, 5), "width must be a whole number from 1 to 10000, but is 0"),
+        (lambda: Stroke.straight((1,), (2, 3)), "from_mm must be x and y in mm"),  # type: ignore[arg-type]
+        (lambda: Stroke.human(-1), "seed must be a whole number from 0 to 18446744073709551615, but is -1"),
         (lambda: Simulator(FLAT, touch="50"), "no bundled touch source is named `50`"),
     ],
 )

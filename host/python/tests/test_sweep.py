@@ -157,7 +157,10 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
         ({"peple": 3}, r"<plan>:\d+:1: the plan has no field `peple`: did you mean `people`"),
         ({"scenes": ["nowhere.toml"]}, "nowhere.toml cannot be read"),
         ({"scenes": {}}, "give the name of one scene file or more"),
-        ({"scenes": "grating.toml"}, "a list of files, or a dictionary of scenes by their names, found 'grating.toml'"),
+        (
+            {"scenes": "grating.toml"},
+            "or a dictionary of scenes by their names, but is 'grating.toml'",
+        ),
         (
             {"scenes": {"a": Scene.parse(GRATING).with_finger("dry")}},
             "the scene a is for another finger or screen .* and screens in `screens`",
@@ -166,7 +169,7 @@ def test_a_study_does_not_replace_another_one_unasked(tmp_path: Path) -> None:
             {"scenes": {"a": Scene.parse(GRATING).with_screen("example")}},
             "the scene a is for another finger or screen",
         ),
-        ({"scenes": {"a": "grating.toml"}}, r"Scene\.load reads a file, found 'grating.toml'"),
+        ({"scenes": {"a": "grating.toml"}}, r"\(Scene\.load reads a file\), but is 'grating.toml'"),
         ({"touch": ["50"]}, "give its file, from the plan's folder, or a bundled one"),
         ({"parameters": {"layer.2.high_n": [1]}}, "has no layer 2, but 1 layer: write layer.1"),
         (
@@ -188,7 +191,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
         sweep.cells(tmp_path / "finger.toml")
     with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")
-    with pytest.raises(ParameterError, match=r"a cell is a text made by `sweep\.cells`, found 3"):
+    with pytest.raises(ParameterError, match=r"a cell must be a text made by `sweep\.cells`, but is 3"):
         sweep.play(3)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="a study needs one result or more"):
         sweep.Study([])

@@ -22,7 +22,7 @@ SHOWN_MAX = 64
 
 def refusal(name: str, expected: str, found: object) -> ParameterError:
     """The exception for an argument that is not as `expected`."""
-    return ParameterError(f"{name} is {expected}, found {shown(found)}")
+    return ParameterError(f"{name} must be {expected}, but is {shown(found)}")
 
 
 def shown(value: object) -> str:
@@ -82,7 +82,7 @@ def flag(name: str, value: object) -> bool:
 def text(name: str, value: object) -> str:
     """A text that can be encoded as UTF-8."""
     if not isinstance(value, str) or any("\ud800" <= character <= "\udfff" for character in value):
-        raise refusal(name, "a text", value)
+        raise refusal(name, "a string", value)
     return value
 
 
@@ -125,6 +125,8 @@ def each(name: str, values: Iterable[Any]) -> Iterator[Any]:
 
 def array(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Numbers, as an array of their shape."""
+    if np.ma.is_masked(values):
+        raise ParameterError(f"{name} has masked elements: leave them out")
     try:
         taken = np.asarray(values)
     except (TypeError, ValueError) as error:
@@ -135,6 +137,15 @@ def array(name: str, values: ArrayLike) -> NDArray[np.float64]:
     if taken.dtype.kind not in "iuf":
         raise refusal(name, "numbers in an array or a list", values)
     return taken.astype(np.float64)
+
+
+def check_finite(name: str, values: NDArray[np.float64], *, or_nan: bool = False) -> None:
+    """Refuse an array with an element that is not finite, by its index."""
+    wrong = np.argwhere(np.isinf(values) if or_nan else ~np.isfinite(values))
+    if len(wrong):
+        place = ", ".join(map(str, wrong[0]))
+        expected = "finite or NaN" if or_nan else "finite"
+        raise refusal(f"{name}[{place}]" if place else name, expected, float(values[tuple(wrong[0])]))
 
 
 def participant_code(value: object) -> str:

@@ -43,7 +43,7 @@ def _plain(value: Any) -> Any:
 
 def _key(key: object) -> str:
     if not isinstance(key, str):
-        raise refusal("the name of a field", "a text", key)
+        raise refusal("the name of a field", "a string", key)
     return key if _BARE_KEY.fullmatch(key) else _text(key)
 
 
@@ -69,4 +69,4 @@ def _inline(value: Any, depth: int = 0) -> str:
         )
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_inline(_plain(item), depth + 1) for item in value) + "]"
-    raise refusal("a field", "a text, a number, a list or a table", value)
+    raise refusal("a field", "a string, a number, a list or a table", value)

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from ._arguments import array, flag, real, refusal
+from ._arguments import array, check_finite, flag, real, refusal
 from .errors import FrixelWarning, ParameterError
 
 __all__ = ["Contact", "SoftContact", "States", "eval", "invert"]
@@ -221,6 +221,8 @@ def _broadcast(contact: object, given: dict[str, ArrayLike]) -> tuple[NDArray[np
     if not isinstance(contact, (Contact, SoftContact)):
         raise refusal("contact", "a Contact or a SoftContact", contact)
     arrays = {name: array(name, values) for name, values in given.items()}
+    for name, values in arrays.items():
+        check_finite(name, values)
     try:
         return tuple(np.broadcast_arrays(*arrays.values()))
     except ValueError as error:

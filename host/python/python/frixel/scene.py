@@ -46,7 +46,7 @@ class Scene:
         screen: Screen | None = None,
     ) -> None:
         if not isinstance(text, bytes):
-            raise refusal("text", "the bytes of a scene file (Scene.parse takes a text)", text)
+            raise refusal("text", "the bytes of a scene file (Scene.parse takes a string)", text)
         for what, value, kind in (("finger", finger, Finger), ("screen", screen, Screen)):
             if not (value is None or isinstance(value, kind)):
                 raise refusal(what, f"a {kind.__name__}", value)
@@ -98,7 +98,7 @@ class Scene:
         """Convert an argument to a scene: a scene itself, or the tables of its file."""
         scene = cls.from_dict(scene) if isinstance(scene, Mapping) else scene
         if not isinstance(scene, Scene):
-            raise refusal("a scene", "a Scene or its tables, and Scene.load reads a file", scene)
+            raise refusal("a scene", "a Scene or its tables (Scene.load reads a file)", scene)
         return scene
 
     def with_finger(self, finger: Finger | str | Mapping[str, Any]) -> Scene:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _frixel
-from ._arguments import array, flag, positive, refusal, whole
+from ._arguments import array, check_finite, flag, positive, refusal, whole
 from .errors import ParameterError
 
 __all__ = ["Stroke"]
@@ -97,10 +97,7 @@ class Stroke:
         if len(shapes) > 1 or columns["t_s"].ndim != 1:
             raise ParameterError(f"a stroke has arrays of one length, found shapes {sorted(shapes)}")
         for name, values in columns.items():
-            wrong = np.flatnonzero(np.isinf(values) | (np.isnan(values) & (name == "t_s")))
-            if wrong.size:
-                expected = "a finite number" if name == "t_s" else "a finite number or NaN"
-                raise refusal(f"{name}[{wrong[0]}]", expected, float(values[wrong[0]]))
+            check_finite(name, values, or_nan=name != "t_s")
         stroke = _Rows(columns["t_s"], columns["x_mm"], columns["y_mm"], columns.get("load_n"))
         _frixel.check_stroke(stroke)
         return stroke

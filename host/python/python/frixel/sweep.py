@@ -78,7 +78,7 @@ def play(cell: str) -> str:
         A board refuses the scene with these values together.
     """
     if not isinstance(cell, str):
-        raise refusal("a cell", "a text made by `sweep.cells`", cell)
+        raise refusal("a cell", "a string made by `sweep.cells`", cell)
     return _frixel.play_cell(checked_text("a cell", cell))
 
 
