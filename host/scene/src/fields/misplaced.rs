@@ -230,5 +230,5 @@ fn no_number(value: &str) -> Option<String> {
         let percent: f64 = value.strip_suffix('%')?.trim().parse().ok()?;
         format!("write the part as a number: {}", digits(percent / 100.0, f64::round))
     };
-    Some(format!("`{}` is no number; {advice}", brief(value)))
+    Some(format!("`{}` is not a number; {advice}", brief(value)))
 }
