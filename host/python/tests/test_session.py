@@ -110,7 +110,7 @@ def test_the_manifest_hashes_what_was_played_and_names_nobody(tmp_path: Path) ->
     values: list[tuple[dict[str, Any], str]] = [
         ({"seed": "7"}, "seed must be a whole number from 0"),
         ({"participant": "Jane Doe"}, r"use a code of 1 to 32 letters, digits, -, _ and \., not a name"),
-        ({"participant": 7}, "participant 7: give a code"),
+        ({"participant": 7}, "participant 7: use a code"),
     ]
     for changed, said in values:
         with pytest.raises(ParameterError, match=said):
@@ -372,9 +372,9 @@ def test_a_session_says_what_cannot_be_played(tmp_path: Path) -> None:
     with opened(tmp_path) as session, Device.open("sim") as device:
         with pytest.raises(ParameterError, match=r"a board from Device\.open, but is 'sim'"):
             session.play(plates(0.1), on="sim", seconds=1)  # type: ignore[arg-type]
-        with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
+        with pytest.raises(ParameterError, match="accepts `seconds`, but no settings"):
             session.play(plates(0.1), on=device)
-        with pytest.raises(ParameterError, match="takes `seconds`, and no settings"):
+        with pytest.raises(ParameterError, match="accepts `seconds`, but no settings"):
             session.play(plates(0.1), on=device, seconds=0.1, seed=3)
         session.run(ConstantStimuli([0.1], 1), lambda trial: None, lambda trial: 0)
         with pytest.raises(ExperimentError, match="no trial is running that this play could belong to"):
