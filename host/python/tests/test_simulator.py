@@ -97,6 +97,12 @@ def test_a_stroke_from_arrays_goes_where_it_says() -> None:
     assert light["felt_n"][at] < recording["felt_n"][at], "a light finger has less friction"
 
 
+def test_a_stroke_that_leaves_the_screen_is_doubted() -> None:
+    stroke = Stroke.straight((100, 40), (140, 40), speed_mm_s=100)
+    with pytest.warns(frixel.FrixelWarning, match=r"off the screen \(120 by 80 mm\) for 5\d\.\d % of the stroke"):
+        Simulator(FLAT, stroke=stroke, ideal=True, rows_per_s=100).run()
+
+
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
