@@ -71,7 +71,7 @@ def test_where_nothing_is_there_is_no_number() -> None:
     ("call", "sentence"),
     [
         (lambda: model.eval(FINGER, -1), "voltage_v_rms must be finite and not below zero, but is -1e0"),
-        (lambda: model.eval(FINGER, [1, np.nan]), "voltage_v_rms must be finite and not below zero, but is NaN"),
+        (lambda: model.eval(FINGER, [1, np.nan]), "voltage_v_rms[1] must be finite, but is nan"),
         (lambda: model.eval(SOFT, 1, -1), "normal_load_n must be finite and not below zero, but is -1e0"),
         (lambda: model.invert(FINGER, np.inf), "friction_n must be finite, but is inf"),
         (

@@ -130,10 +130,7 @@ def test_a_stroke_that_leaves_the_screen_is_doubted() -> None:
         (lambda: Stroke.from_arrays([1, 0], [1, 2], [1, 2]), r"t_s\[1\]: 0 comes after 1"),
         (lambda: Simulator("brick.toml"), r"\(Scene\.load reads a file\), but is 'brick.toml'"),  # type: ignore[arg-type]
         (lambda: Simulator(FLAT, seed=-1), "seed must be a whole number from 0 to 18446744073709551615, but is -1"),
-        (
-            lambda: Simulator(FLAT, person=1.5),
-            "person must be a whole number from 0 to .*, but is 1.5",
-        ),  # type: ignore[arg-type]
+        (lambda: Simulator(FLAT, person=1.5), "person must be a whole number from 0 to .*, but is 1.5"),  # type: ignore[arg-type]
         (lambda: Simulator(FLAT, rows_per_s=0), "rows_per_s must be a whole number from 1 to 40000, but is 0"),
         (
             lambda: Simulator(FLAT, rows_per_s=2**40).run(1),
