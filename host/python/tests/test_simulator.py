@@ -282,7 +282,7 @@ def test_the_command_says_why_it_does_not_play_a_recording_again(tmp_path: Path)
     t_s = np.linspace(0, 1, 200_000)
     Simulator(FLAT, stroke=Stroke.from_arrays(t_s, 10 + t_s, 20 + t_s)).run(0.1).to_parquet(tmp_path / "me.parquet")
     code, said = replayed(tmp_path)
-    assert (code, "only the hash of the file stroke" in said) == (1, True), said
+    assert (code, "only the hash of the large file stroke" in said) == (1, True), said
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent as on Unix")

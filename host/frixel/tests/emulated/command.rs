@@ -107,7 +107,7 @@ fn an_interrupted_play_leaves_what_was_played() {
     let group = rustix::process::Pid::from_raw(process.id() as i32).unwrap();
     rustix::process::kill_process_group(group, rustix::process::Signal::INT).unwrap();
     let output = process.wait_with_output().unwrap();
-    assert!(output.status.success() && said(&output).contains("interrupted: "), "{}", said(&output));
+    assert!(output.status.success() && said(&output).contains("interrupted after "), "{}", said(&output));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = fs::read_to_string(felt).unwrap().lines().count() as u64 - 1;
     assert_eq!(json["ticks"].as_u64().unwrap() / 40, rows, "every whole row that was played is there");
