@@ -99,8 +99,9 @@ impl<L: RecordedLink> Play<'_, L> {
             bars.upload(progress);
             interrupt.goes_on()
         });
-        if args.watch && started.is_ok() {
-            note(format_args!("frixel: {} plays; what is saved replaces it; Ctrl-C ends", args.scene.display()));
+        if started.is_ok() && (args.watch || plan.seconds().is_infinite()) {
+            let replaced = if args.watch { "; what is saved replaces it" } else { "" };
+            note(format_args!("frixel: {} plays{replaced}; Ctrl-C ends", args.scene.display()));
         }
         started.map_err(|error| self.error(error))
     }
