@@ -191,7 +191,7 @@ def test_what_is_no_plan_no_cell_and_no_result_is_refused(tmp_path: Path) -> Non
         sweep.cells(tmp_path / "finger.toml")
     with pytest.raises(ParameterError, match=r"expected a cell made by `sweep\.cells`"):
         sweep.play("{}")
-    with pytest.raises(ParameterError, match=r"a cell must be a text made by `sweep\.cells`, but is 3"):
+    with pytest.raises(ParameterError, match=r"a cell must be a string made by `sweep\.cells`, but is 3"):
         sweep.play(3)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="a study needs one result or more"):
         sweep.Study([])
