@@ -39,8 +39,7 @@ pub(super) struct Way {
 impl Way {
     /// The way across a layer with the largest changes of friction, and 10 mm beyond both ends, within the screen;
     /// `None` for a layer that is visible nowhere. Changes of `below` do not count. A layer that depends on the
-    /// direction is crossed along its axis. A way along a border, where friction changes a little beside it, is taken
-    /// only if no other has half of its changes.
+    /// direction is crossed along its axis.
     pub(super) fn across(
         layer: usize,
         axis_turns: Option<f64>,
@@ -53,20 +52,36 @@ impl Way {
             Some(axis_turns) => vec![Self::along(axis_turns, bounds_m)],
             None => Self::rows_and_columns(bounds_m),
         };
-        let visible = ways.into_iter().filter_map(|way| way.longest_visible(layer, reference));
-        let parts: Vec<(Self, f64)> =
-            visible.map(|way| way.extended(screen_m).liveliest_part([reference, below])).collect();
-        let best = |is_taken: &dyn Fn(&(Self, f64)) -> bool| {
-            parts.iter().copied().fold(None, |best: Option<(Self, f64)>, other| {
-                let is_better = best.is_none_or(|best| other.1 > BETTER * best.1);
-                if is_better && is_taken(&other) { Some(other) } else { best }
-            })
+        let visible: Vec<Self> = ways.into_iter().filter_map(|way| way.longest_visible(layer, reference)).collect();
+        let liveliest = |way: Self| way.liveliest_part([reference, below]);
+        let parts: Vec<(Self, f64)> = visible.iter().map(|way| liveliest(way.extended(screen_m))).collect();
+        let own_n: Vec<f64> = visible.iter().map(|way| liveliest(*way).1).collect();
+        let number = Self::liveliest_of(&parts, [reference, below])?;
+        let largest_own_n = own_n.iter().copied().fold(0.0, f64::max);
+        let number = if own_n.get(number).is_some_and(|own_n| *own_n < STEADY_PART * largest_own_n) {
+            // It meets a neighbour, and runs along the stripes of the layer.
+            let own: Vec<(Self, f64)> = parts.iter().zip(own_n).map(|((way, _), own_n)| (*way, own_n)).collect();
+            Self::liveliest_of(&own, [reference, below])?
+        } else {
+            number
         };
+        parts.get(number).map(|(way, _)| *way)
+    }
+
+    /// The number of the way with the largest changes of friction, N. One along a border, where friction changes a
+    /// little beside it, is taken only if no other has half of its changes.
+    fn liveliest_of(parts: &[(Self, f64)], references: [&Reference; 2]) -> Option<usize> {
         let largest_n = parts.iter().map(|(_, change_n)| *change_n).fold(0.0, f64::max);
         let is_steady = |(way, change_n): &(Self, f64)| {
-            *change_n >= STEADY_PART * largest_n && way.steady_change_n([reference, below]) >= STEADY_PART * change_n
+            *change_n >= STEADY_PART * largest_n && way.steady_change_n(references) >= STEADY_PART * change_n
         };
-        best(&is_steady).or_else(|| best(&|_| true)).map(|(way, _)| way)
+        let best = |is_taken: &dyn Fn(&(Self, f64)) -> bool| {
+            let taken = parts.iter().enumerate().filter(|(_, part)| is_taken(part));
+            taken
+                .reduce(|best, other| if other.1.1 > BETTER * best.1.1 { other } else { best })
+                .map(|(number, _)| number)
+        };
+        best(&is_steady).or_else(|| best(&|_| true))
     }
 
     /// A stroke along the way at constant speed, and back if `there_and_back`.
