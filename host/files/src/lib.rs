@@ -10,7 +10,7 @@
 //!
 //! - No output replaces an input of the same command ([`Inputs`]), by whatever links it is named.
 //! - No output replaces a recording of a person, unless the user requests it. Recordings are recognised by their
-//! content.
+//!   content.
 //! - A file gets its name when everything is on the disk, in one step: the earlier one stays until then.
 //! - Files that belong together are renamed together ([`commit_all`]); the last one may have the hashes of the others.
 //! - A folder has one writer at a time ([`OutputFolder`]).
