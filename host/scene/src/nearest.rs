@@ -108,9 +108,10 @@ impl Nearest {
 /// A remark on the unit of a field that was written with another one: as it stands, its number would be another amount.
 fn other_unit(found: &str, meant: &str) -> &'static str {
     let stem = without_unit(meant);
-    match (found.strip_prefix(stem), meant.strip_prefix(stem)) {
-        (Some(written), Some("_n")) if written.starts_with('_') => ", in N",
-        (Some(written), Some("_mm")) if written.starts_with('_') => ", in mm",
+    let (written, unit) = (found.strip_prefix(stem), meant.strip_prefix(stem));
+    match unit.filter(|_| written != unit && written.is_some_and(|written| written.starts_with('_'))) {
+        Some("_n") => ", in N",
+        Some("_mm") => ", in mm",
         _ => "",
     }
 }
