@@ -393,7 +393,7 @@ fn wrong_type(field: &'static str, expected: &'static str, found: &DeValue) -> F
 
 fn type_of(value: &DeValue) -> &'static str {
     match value {
-        DeValue::String(_) => "a text",
+        DeValue::String(_) => "a string",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",
         DeValue::Boolean(_) => "`true` or `false`",
         DeValue::Datetime(_) => "a date",
