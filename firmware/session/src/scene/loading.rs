@@ -46,7 +46,7 @@ pub(crate) enum Loading {
 
 impl Loading {
     /// Computes the next part of the coefficients of `scene` into `active`, and returns whether it was the last one. A
-    /// step takes well under a millisecond, and 5 ms on an RP2040. Before the last step, the content of `active` must
+    /// step takes well under a millisecond, and 8 ms on an RP2040. Before the last step, the content of `active` must
     /// not be used; if the scene is refused, `active` holds no scene.
     pub(crate) fn step(
         &mut self,
