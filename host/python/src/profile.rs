@@ -46,13 +46,13 @@ pub(crate) fn check_profile(py: Python<'_>, kind: &str, profile: ProfileText) ->
 
 /// The text of a profile's file, which messages call `name`.
 #[pyfunction]
-pub(crate) fn profile_text(py: Python<'_>, kind: &str, bytes: &[u8], name: &str) -> PyResult<String> {
+pub(crate) fn profile_text(py: Python<'_>, kind: &str, content: &[u8], name: &str) -> PyResult<String> {
     let kind = match kind {
         "finger" => FingerProfile::KIND,
         "screen" => Screen::KIND,
         _ => TouchConfig::KIND,
     };
-    kind.text(bytes, name).map(str::to_owned).map_err(|error| scene_error(py, &error))
+    kind.text(content, name).map(str::to_owned).map_err(|error| scene_error(py, &error))
 }
 
 /// The names of the bundled profiles of a kind.
