@@ -70,7 +70,7 @@ fn ticks_to_dac(bulk_frames: usize) -> u64 {
         script.send(Command::SetLayer { layer: 0, on: true, gain: 0.5 });
         let line = script.rig.line_to_board_mut();
         let last_byte = line.delivered() + line.queued() as u64;
-        chunks(&mut script, bulk_frames / 2);
+        chunks(&mut script, bulk_frames - bulk_frames / 2);
         let mut last_byte_tick = None;
         loop {
             let record = script.step();
@@ -159,8 +159,8 @@ fn a_scene_takes_anothers_place_between_two_ticks() {
     // Every phase of the touch source: the tick of the swap may take a report, too.
     for delay in 0..5 {
         let Swap { swap, before, after, swapped } = swap(&before, &after, delay);
-        // The commit advances by a step a tick: fewer than 100 for these scenes.
-        assert!((1_000..1_100).contains(&swap), "{swap}");
+        // The commit advances by a step a tick: 75 to 80 for these scenes.
+        assert!((1_000..1_085).contains(&swap), "{swap}");
         assert_eq!(commanded_bits(&swapped[..swap]), commanded_bits(&before[..swap]), "delay {delay}");
         assert_eq!(amplitudes(&swapped[..swap]), amplitudes(&before[..swap]), "delay {delay}");
         let commanded_n = |record: &RigTick<Status>| record.status.telemetry.commanded_electric_friction_n;

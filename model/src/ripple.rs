@@ -22,8 +22,8 @@ const PHASES: [f32; LEVELS / 2] = [0.980_785_3, 0.831_469_6, 0.555_570_2, 0.195_
 /// exceeds that of a constant voltage with the same rms: see [`LoadedContact::under_carrier`].
 ///
 /// Eight levels represent all ticks. The mean friction is within 1e-6 of that of every tick for a square wave whose
-/// lag is at most 1.5 ticks, within 5e-5 for a lag of 2.5 ticks, and within 0.41 % for a longer one. For a sine it is
-/// within 3e-5 if its half period has at least 20 ticks, and within 0.3 % if it has fewer.
+/// lag is at most 1.5 ticks, within 5e-5 for a lag of 2.5 ticks, and within 0.41 % for one of at most 120 ticks. For a
+/// sine it is within 3e-5 if its half period has at least 20 ticks, and within 0.3 % if it has fewer.
 ///
 /// [`LoadedContact::under_carrier`]: crate::LoadedContact::under_carrier
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ impl Ripple {
         let mut levels = [Level { excess: 0.0, weight: 0.0 }; LEVELS];
         let mut rest = Moments::default();
         for tick in 0..half_period_ticks {
-            let excess = (loss - rho / e * remaining * (2.0 - remaining / e)) / mean_square;
+            let excess = ((loss - rho / e * remaining * (2.0 - remaining / e)) / mean_square).max(-1.0);
             remaining *= decay;
             match levels.get_mut(tick as usize) {
                 Some(level) if (tick as usize) < EDGE_TICKS => *level = Level { excess, weight: 2.0 },

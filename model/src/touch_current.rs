@@ -250,6 +250,12 @@ impl TouchBound {
         let rise = if carrier_hz < 1_000.0 { below } else { above };
         self.series_ohm * (Self::CURRENT_A + rise * (carrier_hz - 1_000.0))
     }
+
+    /// [`voltage_max_v_peak`](Self::voltage_max_v_peak) as it is stated, and scenes are compiled for it: rounded down to
+    /// a tenth of a volt, so that a board's arithmetic finds no excess.
+    pub fn stated_v_peak(&self, carrier_hz: f32) -> f64 {
+        libm::floor(10.0 * f64::from(self.voltage_max_v_peak(carrier_hz))) / 10.0
+    }
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ fn carriers() -> impl Iterator<Item = (Carrier, f64)> {
     let sine = |half, lag_us, bound| (carrier(Waveform::Sine, half, lag_us), bound);
     let squares = [4, 5, 8, 9, 20, 80, 160].into_iter().flat_map(move |half| {
         let settled = [0.0, 1.0, 5.0, 20.0, 37.5].map(|lag_us| square(half, lag_us, 1e-6));
-        let slow = [100.0, 199.0, 400.0, 1e3, 3e3].map(|lag_us| square(half, lag_us, 4.1e-3));
+        let slow = [65.0, 80.0, 100.0, 199.0, 400.0, 1e3, 3e3].map(|lag_us| square(half, lag_us, 4.1e-3));
         settled.into_iter().chain([square(half, 60.0, 5e-5), square(8, 400.0, 5e-5)]).chain(slow)
     });
     let lags_us = [0.0, 5.0, 20.0, 60.0];

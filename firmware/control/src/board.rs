@@ -91,7 +91,7 @@ impl Board {
             current_max_a_rms: 0.5e-3,
             // The current through the series resistor for an edge from 50 V to -50 V, 1.47 mA, plus a fifth.
             current_max_a_peak: 1.8e-3,
-            // Two resistors of 34 kOhm, 1 %. They allow 28.7 V peak at a carrier of 125 Hz, 43.9 V at 1 kHz, and 50 V
+            // Two resistors of 34 kOhm, 1 %. They allow 28.6 V peak at a carrier of 125 Hz, 43.8 V at 1 kHz, and 50 V
             // from 2.2 kHz on (`frixel_model::TouchBound`).
             series_resistance_ohm: 68e3,
             ..Self::SIMULATOR.limits

@@ -106,8 +106,8 @@ fn numbers_out_of_range_are_refused_by_name() {
     }
 }
 
-/// The touch bound for a person without a coating, at each carrier frequency of the board: 68 kOhm allow 28.7 V peak at
-/// 125 Hz, 43.9 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
+/// The touch bound for a person without a coating, at each carrier frequency of the board: 68 kOhm allow 28.6 V peak at
+/// 125 Hz, 43.8 V at 1 kHz and 65.6 V at 5 kHz (`frixel_model::TouchBound`).
 #[test]
 fn a_peak_above_the_touch_bound_is_refused_at_every_carrier() {
     let limits = BoardLimits { series_resistance_ohm: 68e3, current_max_a_rms: 1.0, ..Board::SIMULATOR.limits };

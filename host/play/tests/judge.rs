@@ -210,7 +210,8 @@ fn advice_that_is_followed_ends_in_felt() {
 fn follow(layers: &str, name: &str, field: &str) -> String {
     if name.starts_with("a constant") {
         let (below, top) = layers.split_at(layers.rfind("[[layer]]").unwrap());
-        return format!("{below}[[layer]]\nkind = \"constant\"\nfriction_fraction = 0\n{top}");
+        let region = top.lines().find(|line| line.starts_with("region = ")).unwrap();
+        return format!("{below}[[layer]]\nkind = \"constant\"\nfriction_fraction = 0\n{region}\n{top}");
     }
     let Some(start) = layers.rfind(&format!("{name} = ")) else { return format!("{layers}{field}\n") };
     let length = layers[start..].find([',', '\n', ' ', '}'].as_slice()).unwrap();

@@ -21,8 +21,7 @@ const PEAK_MARGIN: f64 = 1.001;
 fn board_v_peak(limits: &BoardLimits, carrier: &Carrier) -> (f64, &'static str) {
     let whole_v_peak = f64::from(limits.voltage_max_v_peak.min(limits.full_scale_v_peak));
     let touch_bound = TouchBound::behind(limits.series_resistance_ohm);
-    // Rounded down, so that the board's own arithmetic finds no excess.
-    let touch_v_peak = (10.0 * f64::from(touch_bound.voltage_max_v_peak(carrier.carrier_hz()))).floor() / 10.0;
+    let touch_v_peak = touch_bound.stated_v_peak(carrier.carrier_hz());
     if touch_v_peak < whole_v_peak {
         (touch_v_peak, " at this carrier (at most 0.7 mA through a bridged or thin coating)")
     } else {

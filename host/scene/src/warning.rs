@@ -84,9 +84,9 @@ pub(crate) enum Warning {
          which are screen coordinates, or the region"
     )]
     EdgeOutsideRegion { layer: String, distance_mm: f64 },
-    /// The region of an edge cuts off the feet of its ridge.
+    /// The region of an edge clips its ridge.
     #[error(
-        "{layer}: its region leaves {room_mm} mm for a ridge of `width_mm = {width_mm}`, and cuts its feet off: make the \
+        "{layer}: its region leaves {room_mm} mm for a ridge of `width_mm = {width_mm}`, and clips its edges: make the \
          region at least as wide as the ridge"
     )]
     RidgeCutOff { layer: String, width_mm: f64, room_mm: f64 },

@@ -55,7 +55,7 @@ fn on_bare_glass(element: &Element) -> Option<Change> {
     }
     let Element { burst, is_triggered, .. } = *element;
     let element = Element { burst, is_triggered, ..Element::of(&program, element.layer)? };
-    Some(Change { text: "a constant of `friction_fraction = 0` below it".to_owned(), element })
+    Some(Change { text: "a constant of `friction_fraction = 0` in its region below it".to_owned(), element })
 }
 
 /// The element with its record and setting changed; `None` if it becomes invisible.

@@ -98,7 +98,10 @@ pub(super) fn of(element: &Element, felt: &Measured, faultless: &Measured) -> (V
         _ if !felt.is_vibration && scene.sharp.verdict == Verdict::Felt => {
             Some(Reason::TooSmall { limit: SizeLimit::Fingertip, weber_steps: steps(&scene.sharp) })
         }
-        _ if scene.whole.verdict > verdict && !felt.is_vibration && !is_short_ridge(element) => {
+        _ if scene.whole.verdict > verdict.max(scene.sharp.verdict)
+            && !felt.is_vibration
+            && !is_short_ridge(element) =>
+        {
             Some(Reason::TooSlow { way_mm: 1e3 * WAY_MAX_M, weber_steps: steps(&scene.whole) })
         }
         Verdict::Unknown => Some(Reason::NotStudied),
@@ -142,7 +145,7 @@ fn is_short_ridge(element: &Element) -> bool {
 /// Whether a border can be perceived: a ground of natural friction has none to the bare screen.
 fn has_border(element: &Element, felt: &Measured) -> bool {
     let natural_n = element.program.reach.natural_friction_n;
-    let is_natural = felt.level.is_some_and(|level| level.scene_n <= natural_n);
+    let is_natural = felt.level.is_some_and(|level| level.scene_n - natural_n < 1e-6);
     felt.border.is_some_and(|border| !is_natural || border.step.verdict > Verdict::NotFelt)
 }
 

@@ -55,16 +55,13 @@ impl Way {
         let visible: Vec<Self> = ways.into_iter().filter_map(|way| way.longest_visible(layer, reference)).collect();
         let liveliest = |way: Self| way.liveliest_part([reference, below]);
         let parts: Vec<(Self, f64)> = visible.iter().map(|way| liveliest(way.extended(screen_m))).collect();
-        let own_n: Vec<f64> = visible.iter().map(|way| liveliest(*way).1).collect();
-        let number = Self::liveliest_of(&parts, [reference, below])?;
-        let largest_own_n = own_n.iter().copied().fold(0.0, f64::max);
-        let number = if own_n.get(number).is_some_and(|own_n| *own_n < STEADY_PART * largest_own_n) {
-            // It meets a neighbour, and runs along the stripes of the layer.
-            let own: Vec<(Self, f64)> = parts.iter().zip(own_n).map(|((way, _), own_n)| (*way, own_n)).collect();
-            Self::liveliest_of(&own, [reference, below])?
-        } else {
-            number
-        };
+        let own: Vec<(Self, f64)> = visible.iter().map(|way| liveliest(*way)).collect();
+        let mut number = Self::liveliest_of(&parts, [reference, below])?;
+        let largest_own_n = own.iter().map(|(_, change_n)| *change_n).fold(0.0, f64::max);
+        if own.get(number).is_some_and(|(_, change_n)| *change_n < STEADY_PART * largest_own_n) {
+            // The best way runs along this layer's stripes into a neighbour.
+            number = Self::liveliest_of(&own, [reference, below])?;
+        }
         parts.get(number).map(|(way, _)| *way)
     }
 

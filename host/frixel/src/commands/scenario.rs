@@ -30,14 +30,15 @@ pub(super) fn run(file: &Path, expect: bool, rig: Target) -> Result<()> {
     let scenes = scenes(&scenario, file)?;
     let config = rig.rig();
     let programs = programs(&scenario, &scenes, &config)?;
-    let outcome = match (rig, programs.get(&scenario.scene)) {
-        (Target::Qemu | Target::Pico, Some(program)) => {
+    let outcome = match rig {
+        Target::Qemu | Target::Pico => {
+            let program = scenario::first_program(&scenario, &programs)?;
             let simulation = scenario::simulation(&scenario, &programs, &config)?;
             let run = |mut rig: Box<dyn BoardRig + '_>| Ok(scenario::run(&scenario, &programs, &mut *rig)?);
             let (outcome, ended) = rig.on_rig(&simulation, program, run)?;
             ended.map(|()| outcome)?
         }
-        _ => run_in_process(&scenario, &programs, &config)?,
+        Target::Sim | Target::Port => run_in_process(&scenario, &programs, &config)?,
     };
     print(&outcome)?;
     let (unmet, expectations) = (outcome.unmet.len(), outcome.expectations);

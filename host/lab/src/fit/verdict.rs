@@ -21,7 +21,7 @@ const LEAKAGE: f64 = 0.07;
 /// Tolerance of the voltage exponent below the model's.
 ///
 /// The carrier's ripple raises the model's exponent by 0.01 from a steady voltage to a square wave of 1 kHz, and data
-/// seldom state their carrier.
+/// seldom state their carrier. Twice that, since edges and frequencies differ.
 const RIPPLE: f64 = 0.02;
 /// Difference of exponents up to which a doubted model is still fitted: [`LEAKAGE`] and a margin.
 const ALLOWANCE: f64 = 0.1;

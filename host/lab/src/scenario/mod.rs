@@ -132,7 +132,8 @@ pub fn simulation(scenario: &Scenario, programs: &Programs, rig: &RigConfig) -> 
     Ok(Simulation { seconds: scenario.seconds, ..simulation })
 }
 
-fn first_program<'p>(scenario: &Scenario, programs: &'p Programs) -> Result<&'p Program, ScenarioError> {
+/// The program of a scenario's first scene.
+pub fn first_program<'p>(scenario: &Scenario, programs: &'p Programs) -> Result<&'p Program, ScenarioError> {
     let no_scene = || ScenarioError::NoScene { file: scenario.file.clone(), scene: scenario.scene.clone() };
     programs.get(&scenario.scene).ok_or_else(no_scene)
 }

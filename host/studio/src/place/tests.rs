@@ -45,7 +45,7 @@ const INCLUDED: [(&str, &str); 2] = [
 ];
 /// Parts of what the compiler says of friction, or of a place inside the layer, where a layer has gone elsewhere.
 const OF_FELT: [&str; 4] =
-    ["of the reach), and at", "outside its `region`", "cuts its feet off", "the picture is stretched by"];
+    ["of the reach), and at", "outside its `region`", "clips its edges", "the picture is stretched by"];
 
 fn in_folder(folder: &str, ending: &str) -> Vec<(String, Vec<u8>)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(folder);

@@ -81,10 +81,8 @@ impl Table {
         TouchPath { series_ohm: self.series_ohm, coating }
     }
 
-    /// The bound, rounded down as scenes are compiled for it.
     fn bound_v_peak(&self, carrier_hz: f64) -> f64 {
-        let bound_v_peak = TouchBound::behind(self.series_ohm as f32).voltage_max_v_peak(carrier_hz as f32);
-        (10.0 * f64::from(bound_v_peak)).floor() / 10.0
+        TouchBound::behind(self.series_ohm as f32).stated_v_peak(carrier_hz as f32)
     }
 
     fn assumptions(&self, args: &SafetyArgs) -> String {
@@ -287,7 +285,7 @@ impl Behind {
             series_ohm,
             edge_time_constant_s: edge_time_constant_s.into(),
             drive_v_peak: voltage_v_rms * peak_per_rms,
-            bound_v_peak: TouchBound::behind(series_ohm as f32).voltage_max_v_peak(carrier_hz as f32).into(),
+            bound_v_peak: TouchBound::behind(series_ohm as f32).stated_v_peak(carrier_hz as f32),
             edges_part: 1.0 - 1.0 / (peak_per_rms * peak_per_rms),
         }
     }

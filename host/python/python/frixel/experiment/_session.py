@@ -260,7 +260,7 @@ class Session:
                 "same task"
             )
         if id(method) in _RUN:
-            raise ParameterError("this method has presented trials in another run: make a new one for each `run`")
+            raise ParameterError("this method was given to another run: make a new one for each `run`")
         # A class of one's own may have slots, without one for weak references.
         with suppress(TypeError):
             _RUN[id(method)] = method
