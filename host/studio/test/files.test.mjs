@@ -18,7 +18,7 @@ test("bad files and big ones are sentences", async () => {
   await assertSays(page, /bad\.png: it is neither a PNG nor a JPEG file/);
   await give(page, ["bad.png", png.subarray(0, 900)]);
   await assertSays(page, /bad\.png: it is damaged/);
-  for (const [name, mb] of [["big.toml", 20], ["big.png", 20], ["big.zip", 33]]) {
+  for (const [name, mb] of [["big.toml", 20], ["big.png", 33], ["big.zip", 33]]) {
     await give(page, [name, Buffer.alloc(mb * 1e6, 0x41)]);
     await assertSays(page, new RegExp(`${name}: the file has ${mb}\\.0 MB`));
   }
