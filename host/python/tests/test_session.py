@@ -415,7 +415,7 @@ def test_a_session_plays_on_a_board_and_has_its_clock(tmp_path: Path) -> None:
         assert table["t_s"][0].as_py() == 0
         assert table["t_s"][-1].as_py() == pytest.approx(0.49, abs=0.02)
         assert json.loads(parquet.read_metadata(tmp_path / first["recording"]).metadata[b"frixel.recording"])["tick_hz"]
-        with pytest.raises(PlayError, match="cannot be played again: it is of a virtual board"):
+        with pytest.raises(PlayError, match="cannot be played again: it was made on a virtual board"):
             session.replay(0)
 
 
