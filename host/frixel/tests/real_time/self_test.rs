@@ -75,7 +75,7 @@ fn what_is_wrong_ends_in_the_report_and_in_exit_code_1() {
     for (wrong, typed, says) in [
         (Defect::ReadyHigh, "", "unplug the amplifier"),
         (Defect::NoSyncWire, "unplugged\n", "SYNC is not wired"),
-        (Defect::LatchLate, "unplugged\n", "2 of the measurements"),
+        (Defect::LatchLate, "unplugged\n", "measurements out of range on"),
     ] {
         let report = folder.path().join(format!("{wrong:?}.json")).display().to_string();
         let (output, board) = self_test(wrong, 0, typed, &report);
