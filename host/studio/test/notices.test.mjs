@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import { test } from "node:test";
 import { boxes } from "./layout.mjs";
-import { WHOLE_SCREEN_GRATING, give, liveGrating, openScene, openStudio, plays, resize } from "./page.mjs";
+import { WHOLE_SCREEN_GRATING, give, liveGrating, openScene, openStudio, plays, resize, settled } from "./page.mjs";
 
 const JPEG = new URL("../../../scenes/textures/wood.jpg", import.meta.url);
 /** Distance at which a notice stands beside its control at most, CSS pixels. */
@@ -40,6 +40,7 @@ test("good news floats beside its control and goes, bad news stays", async () =>
   const page = await openStudio();
   const notice = page.locator("#notice");
   await page.waitForFunction(() => studioPage.map.frictionN.length > 0);
+  await settled(page);
   const before = await boxes(page, PARTS);
   await page.click("#share");
   // The page's time goes on while the test measures: a notice under the pointer stays.

@@ -136,7 +136,7 @@ fn of_extent(element: &Element, felt: &Measured) -> Option<Verdict> {
     }
 }
 
-/// Whether it is a ridge within a way over which a change counts as one: its slope cannot be too slow.
+/// Whether it is a ridge so narrow that its slope cannot be too slow.
 fn is_short_ridge(element: &Element) -> bool {
     let layer = element.record().map(|record| record.layer);
     matches!(layer, Some(Layer::Edge(edge)) if f64::from(edge.width_m) <= WAY_MAX_M)

@@ -223,9 +223,8 @@ fn exponent_words(exponent: &Exponent, no_verdict: &str) -> String {
         Verdict::Kept => ("is not contradicted", 2),
         Verdict::Doubted => ("is in doubt", 3),
     };
-    format!(
-        "{value:.digits$} (95 % interval {low:.digits$} to {high:.digits$}); the model predicts {model:.digits$} and {outcome}"
-    )
+    let interval = format!("{low:.digits$} to {high:.digits$}");
+    format!("{value:.digits$} (95 % interval {interval}); the model predicts {model:.digits$} and {outcome}")
 }
 
 /// The limits of the data, as sentences.

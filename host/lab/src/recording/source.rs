@@ -1,4 +1,4 @@
-//! What a play is made from, as its recording keeps it.
+//! Inputs of a play, as its recording keeps them.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::stroke_file::StrokeFile;
 /// Bytes of files by their names.
 pub(super) type FileBytes = BTreeMap<String, Vec<u8>>;
 
-/// What a play is made from, beside its options: the texts and the bytes of its files.
+/// Inputs of a play beside its options: the texts and the bytes of its files.
 #[derive(Clone, Debug, Default)]
 pub struct PlaySource {
     /// Text of the scene's file.
@@ -54,7 +54,7 @@ impl PlaySource {
         }
     }
 
-    /// What a recorded play was made from.
+    /// Inputs of a recorded play.
     pub(super) fn of(metadata: &Metadata, options: &PlayOptions) -> Result<Self, ReplayError> {
         let files = bytes_of(&metadata.files)?;
         let profile = |option: &Option<String>, file: &str| match (option, files.get(file)) {

@@ -222,7 +222,7 @@ fn are_bare_words(value: &str) -> bool {
     value.starts_with(char::is_alphabetic) && value.chars().all(is_of_words)
 }
 
-/// What is wrong with a number that has a unit or a percent sign behind it.
+/// Describes the mistake of a number with a unit or a percent sign behind it.
 fn no_number(value: &str) -> Option<String> {
     let advice = if has_unit(value) {
         UNIT_ADVICE.to_owned()

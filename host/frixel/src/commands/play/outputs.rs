@@ -85,7 +85,7 @@ impl PlayFiles {
         Ok(self.record.iter().try_for_each(|(record, _)| record.check_inputs(&inputs))?)
     }
 
-    /// What the play of `--record` is made from.
+    /// Inputs of the play, for `--record`.
     pub(super) fn source(&self) -> Option<&PlaySource> {
         self.record.as_ref().map(|(_, source)| source)
     }

@@ -36,7 +36,7 @@ pub(super) fn output(args: &PlayArgs, inputs: &Inputs) -> Result<Option<OutputFi
     Ok(Some(OutputFile::replacing(path, OPTION, inputs, args.overwrite)?))
 }
 
-/// What a play is made from. Reads the files of profiles and stroke; those of the scene have been read already.
+/// Returns the inputs of a play. Reads the files of profiles and stroke; those of the scene have been read already.
 pub(super) fn source(args: &PlayArgs, scene: &SceneFiles) -> Result<PlaySource> {
     let names = args.profiles.names();
     let read = |path| input::read(path, input::CSV_MAX_BYTES).map_err(reading(path));
