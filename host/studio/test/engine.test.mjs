@@ -43,7 +43,8 @@ async function silenced(silence) {
   // A finger that stands still ends the output, too: only the board's state says that it has noticed the silence.
   const silent = after.findIndex((frame) => frame.state !== "active");
   if (silent < 0) throw new Error("the board has not noticed the silence");
-  const later = after.slice(silent + 1).filter((frame) => frame.state !== "active");
+  // The output falls within a millisecond, which may begin in one frame and end in the next.
+  const later = after.slice(silent + 2).filter((frame) => frame.state !== "active");
   return {
     ms: (after[silent].tick - silentAtTick) / 40,
     isDriven: later.some((frame) => frame.voltageV.some((voltage) => voltage > 1)),
