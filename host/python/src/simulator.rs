@@ -3,7 +3,7 @@
 use frixel_hil_sim::{RigConfig, Stroke as SimulatedStroke};
 use frixel_lab::GeneratedStroke;
 use frixel_lab::recording::{Metadata, PlaySource, play_fields, play_values};
-use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions, screen_m};
+use frixel_lab::simulate::{PlayOptions, PlayOptionsError, StrokeOptions, off_screen_note, screen_m};
 use frixel_lab::stroke_file::{self, StrokeFile, StrokeFileError};
 use frixel_play::{Simulated, Simulation};
 use frixel_scene::Program;
@@ -165,14 +165,15 @@ impl Settings<'_> {
     }
 }
 
-/// Plays a scene on the simulated board. Returns the columns of the recording, and its [`Made`] as JSON.
+/// Plays a scene on the simulated board. Returns the columns of the recording, its [`Made`] as JSON, and a sentence if
+/// the stroke leaves the screen.
 #[pyfunction]
 pub(crate) fn simulate<'py>(
     py: Python<'py>,
     scene: &Scene,
     settings: Settings<'py>,
     seconds: Option<f64>,
-) -> PyResult<(Bound<'py, PyDict>, String)> {
+) -> PyResult<(Bound<'py, PyDict>, String, Option<String>)> {
     let Play { program, options, source, simulation } = settings.play(py, scene, seconds)?;
     let played = interruptible(py, |goes_on| frixel_play::simulate(program, &simulation, None, goes_on))?;
     let failed = |error: &dyn std::fmt::Display| raised(py, "PlayError", (error.to_string(),));
@@ -182,5 +183,7 @@ pub(crate) fn simulate<'py>(
     let files = metadata.files.clone();
     let made = Made { metadata, files, later_scenes: Vec::new(), markers: recorder.markers().to_vec() };
     let made = serde_json::to_string(&made).map_err(|error| failed(&error))?;
-    Ok((columns(py, &play_fields(), play_values(recorder.rows()))?, made))
+    let note = off_screen_note(&simulation.stroke, screen_m(program), simulation.seconds);
+    let note = note.map_err(|error| parameter_error(py, error.to_string()))?;
+    Ok((columns(py, &play_fields(), play_values(recorder.rows()))?, made, note))
 }

@@ -10,8 +10,7 @@ use clap::Args;
 use frixel_hil_sim::{Point, Stroke};
 use frixel_lab::GeneratedStroke;
 use frixel_lab::simulate::{
-    PlayOptions, PlayOptionsError, STRAIGHT_MAX_M_PER_S, StrokeOptions, StrokeOptionsError, TIMES_MAX,
-    fraction_off_screen, side_mm,
+    PlayOptions, PlayOptionsError, STRAIGHT_MAX_M_PER_S, StrokeOptions, StrokeOptionsError, TIMES_MAX, off_screen_note,
 };
 use frixel_lab::stroke_file::StrokeFile;
 use frixel_scene::Nearest;
@@ -171,13 +170,8 @@ pub(super) fn note_off_screen(
     screen_m: [f64; 2],
     seconds: f64,
 ) -> Result<(), PlayOptionsError> {
-    let part = fraction_off_screen(stroke, screen_m, seconds)?;
-    if part > 0.0 {
-        let [width_mm, height_mm] = screen_m.map(side_mm);
-        let percent = (100.0 * part).max(0.1);
-        note(format_args!(
-            "{name}: the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke"
-        ));
+    if let Some(sentence) = off_screen_note(stroke, screen_m, seconds)? {
+        note(format_args!("{name}: {sentence}"));
     }
     Ok(())
 }

@@ -32,10 +32,25 @@ pub fn check_duration(seconds: f64, tick_hz: u32) -> Result<(), PlayOptionsError
     }
 }
 
+/// A sentence on the part of a stroke's first `seconds` that is off a screen of this width and height, in m; `None` if
+/// all of it is on the screen.
+///
+/// # Errors
+///
+/// The finger is never down on the screen.
+pub fn off_screen_note(stroke: &Stroke, screen_m: [f64; 2], seconds: f64) -> Result<Option<String>, PlayOptionsError> {
+    let fraction = fraction_off_screen(stroke, screen_m, seconds)?;
+    Ok((fraction > 0.0).then(|| {
+        let [width_mm, height_mm] = screen_m.map(side_mm);
+        let percent = (100.0 * fraction).max(0.1);
+        format!("the finger is off the screen ({width_mm} by {height_mm} mm) for {percent:.1} % of the stroke")
+    }))
+}
+
 /// Fraction of the first `seconds` of a stroke for which the finger is off a screen of this width and height, in m.
 ///
 /// From 0 to 1. Fails if the finger is never down on the screen.
-pub fn fraction_off_screen(
+pub(super) fn fraction_off_screen(
     stroke: &Stroke,
     [width_m, height_m]: [f64; 2],
     seconds: f64,
@@ -58,6 +73,6 @@ pub fn fraction_off_screen(
 }
 
 /// A side of a screen, which a program stores as f32, as its file has it: in mm, to a micrometre.
-pub fn side_mm(side_m: f64) -> f64 {
+fn side_mm(side_m: f64) -> f64 {
     (1e6 * side_m).round() / 1e3
 }

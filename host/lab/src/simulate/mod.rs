@@ -12,7 +12,8 @@ use frixel_play::Simulation;
 use frixel_scene::{CompileError, Program, Scene, Shown};
 use thiserror::Error;
 
-pub use checks::{check_duration, fraction_off_screen, side_mm, ticks_per_row};
+use checks::fraction_off_screen;
+pub use checks::{check_duration, off_screen_note, ticks_per_row};
 pub use default_stroke::{BUNDLED_SCREEN_M, REPEAT_PAUSE_S, default_stroke, endless_sweep};
 pub use options::{PlayOptions, STRAIGHT_MAX_M_PER_S, STROKE_MAX_S, StrokeOptions, StrokeOptionsError, TIMES_MAX};
 

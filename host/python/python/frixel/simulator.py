@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _frixel
 from ._arguments import flag, mapping, real, refusal, shown, whole
@@ -117,9 +116,10 @@ class Simulator:
             A board refuses the scene, which is played as a draft, clamped; or the stroke leaves the screen.
         """
         seconds = None if seconds is None else real("seconds", seconds)
-        columns, made = _frixel.simulate(self.scene.compiled, self, seconds)
+        columns, made, off_screen = _frixel.simulate(self.scene.compiled, self, seconds)
         self.scene._warn_of_draft()
-        self._warn_off_screen(np.asarray(columns["x_mm"]), np.asarray(columns["y_mm"]))
+        if off_screen:
+            warnings.warn(off_screen, FrixelWarning, stacklevel=2)
         settings = {
             "frixel": _frixel.__version__,
             "scene": self.scene.name,
@@ -135,18 +135,6 @@ class Simulator:
         }
         given = {name: value for name, value in settings.items() if value is not None}
         return Recording({name: np.asarray(values) for name, values in columns.items()}, given, self.scene, made)
-
-    def _warn_off_screen(self, x_mm: NDArray[np.float64], y_mm: NDArray[np.float64]) -> None:
-        """Warn of a stroke that is partly off the screen, as `frixel play` does."""
-        width_mm, height_mm = self.scene.compiled.screen_mm
-        share = float(np.mean((x_mm < 0) | (x_mm > width_mm) | (y_mm < 0) | (y_mm > height_mm)))
-        if share > 0.0:
-            warnings.warn(
-                f"the finger is off the screen ({width_mm:g} by {height_mm:g} mm) for {100 * share:.1f} % of "
-                "the stroke",
-                FrixelWarning,
-                stacklevel=3,
-            )
 
 
 def run(cell: Mapping[str, Any]) -> Recording:
