@@ -261,13 +261,13 @@ class Session:
             )
         if id(method) in _RUN:
             raise ParameterError("this method was given to another run: make a new one for each `run`")
-        # A class of one's own may have slots, without one for weak references.
-        with suppress(TypeError):
-            _RUN[id(method)] = method
         self._is_cut_off = True
         answers = Answers()
         for practised in practised_levels:
             self._trial(play, answer, block, practised, is_practice=True)
+        # A class of one's own may have slots, without one for weak references.
+        with suppress(TypeError):
+            _RUN[id(method)] = method
         count = 0
         while (level := method.next_level()) is not None:
             correct = self._trial(play, answer, block, level)
