@@ -239,8 +239,8 @@ impl<P: Port> LoopedBoard for LoopedRig<P> {
     }
 
     fn cycles(&mut self) -> u32 {
-        let is_refused = self.inputs() != defect::LOW;
-        self.one_shot.pass(is_refused)
+        let is_forbidden = self.inputs() != defect::LOW;
+        self.one_shot.pass(is_forbidden)
     }
 
     fn forget_edges(&mut self) -> u32 {

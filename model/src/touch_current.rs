@@ -251,8 +251,8 @@ impl TouchBound {
         self.series_ohm * (Self::CURRENT_A + rise * (carrier_hz - 1_000.0))
     }
 
-    /// [`voltage_max_v_peak`](Self::voltage_max_v_peak) as it is stated, and scenes are compiled for it: rounded down to
-    /// a tenth of a volt, so that a board's arithmetic finds no excess.
+    /// The bound as it is stated and as scenes are compiled for it, in V: rounded down to a tenth, so that a board's own
+    /// arithmetic finds no excess.
     pub fn stated_v_peak(&self, carrier_hz: f32) -> f64 {
         libm::floor(10.0 * f64::from(self.voltage_max_v_peak(carrier_hz))) / 10.0
     }

@@ -30,10 +30,10 @@ pub(super) struct OneShot {
 }
 
 impl OneShot {
-    /// Advances by one cycle, in which the enable must be low if it `is_refused`, and returns the time.
-    pub(super) fn pass(&mut self, is_refused: bool) -> u32 {
+    /// Advances by one cycle, in which the enable must be low if it `is_forbidden`, and returns the time.
+    pub(super) fn pass(&mut self, is_forbidden: bool) -> u32 {
         self.now += 1;
-        self.forbidden_cycles += u32::from(is_refused && self.high_since.is_some());
+        self.forbidden_cycles += u32::from(is_forbidden && self.high_since.is_some());
         if self.rises_at == Some(self.now) {
             self.high_since = self.high_since.or(Some(self.now));
             self.rose = self.rose.or(Some(self.now));

@@ -174,7 +174,8 @@ fn advice_that_is_followed_ends_in_felt() {
     let faint = "[[layer]]\nkind = \"constant\"\nfriction_fraction = FRACTION\n\
                  region = { x_mm = 40, y_mm = 20, width_mm = 30, height_mm = 30 }\n";
     let edge = "[[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 0.3\nridge_fraction = 0.9\n";
-    let ridge_over_stripes = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 1.5\nlow_fraction = 0.2\nhigh_fraction = 0.8\n\
+    let ridge_over_stripes = "[[layer]]\nkind = \"grating\"\nwavelength_mm = 1.5\n\
+                              low_fraction = 0.2\nhigh_fraction = 0.8\n\
                               [[layer]]\nkind = \"edge\"\nx_mm = 60\ny_mm = 40\nwidth_mm = 8\nridge_fraction = 0.9\n\
                               blend = \"max\"\nregion = { x_mm = 50, y_mm = 20, width_mm = 20, height_mm = 40 }\n";
     let button = |fields: &str| {

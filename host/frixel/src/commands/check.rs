@@ -10,12 +10,11 @@ use frixel_hil_sim::{Board, RigConfig, WorldOptions};
 use frixel_layers::Header;
 use frixel_play::{TO_THE_END, board_costs, judge};
 use frixel_scene::{Program, Scene, compile, compile_draft, printable};
-use frixel_session::store::check_touched_board;
-use frixel_wire::hello::BoardKind;
 
 use super::argument;
-use super::error::{at, of_simulation};
+use super::error::of_simulation;
 use super::profiles::{ProfileArgs, TouchArgs};
+use super::real_board::{behind, until_measured};
 use super::terminal::{print, print_line};
 
 #[derive(Debug, Args)]
@@ -84,15 +83,6 @@ pub(super) fn run(args: &CheckArgs) -> Result<()> {
     print(check.summary(args.cost))
 }
 
-/// The board, behind another series resistance if one is given.
-pub(super) fn behind(board: Board, series_kohm: Option<f64>) -> Result<Board> {
-    let Some(series_kohm) = series_kohm else { return Ok(board) };
-    let board = board.behind(1e3 * series_kohm as f32);
-    check_touched_board(&board.limits)
-        .map_err(at(format!("no firmware accepts a series resistance of {series_kohm} kOhm")))?;
-    Ok(board)
-}
-
 /// The board's answer to a program within its limits.
 fn verdict(board: &Board, program: &Program) -> &'static str {
     let allowed_v_peak = board.until_measured_v_peak().unwrap_or(f32::INFINITY);
@@ -101,16 +91,6 @@ fn verdict(board: &Board, program: &Program) -> &'static str {
     } else {
         "accepts it"
     }
-}
-
-/// The largest voltage that the board allows until limits are stored, if that is less than its own.
-pub(super) fn until_measured(board: &Board) -> Option<String> {
-    let v_peak = board.until_measured_v_peak()?;
-    let (when, page) = match board.kind {
-        BoardKind::NucleoG474re => ("until bring-up has stored limits", "hardware.md"),
-        _ => ("until limits are stored, which nothing does on this board yet,", "pico.md"),
-    };
-    Some(format!("{when} it allows {v_peak} V peak (docs/board/{page})"))
 }
 
 /// Prints what is felt of a scene that a board refuses, clamped to the board's limits.

@@ -16,6 +16,7 @@ mod play;
 mod port;
 mod preview;
 mod profiles;
+mod real_board;
 mod report;
 mod scenario;
 mod schema;

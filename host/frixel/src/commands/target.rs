@@ -59,7 +59,7 @@ impl Target {
         if self == Self::Sim { (board.limits, board.tick_hz) } else { (hello.limits, hello.tick_hz) }
     }
 
-    /// The board, in an ideal world. A board on a serial port is none of these.
+    /// Configuration of the rig, in an ideal world: that of the simulator for a board on a serial port.
     pub(super) fn rig(self) -> RigConfig {
         RigConfig::of(match self {
             #[cfg(unix)]

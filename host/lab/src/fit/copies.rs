@@ -5,8 +5,8 @@ use super::table::Row;
 /// Threshold for a copy: the succession of its rows is as improbable as eight rows that occur nowhere else.
 const SUCCESSIONS: f64 = 7.0;
 
-/// The first and last row number of a run of rows that repeats an earlier run, regardless of time and stroke, and those
-/// of the earlier run; `None` if there is none, or chance explains it.
+/// First and last row numbers of a run of rows that repeats an earlier run, regardless of time and stroke, and of that
+/// earlier run. `None` without a repetition, or if chance explains it.
 pub(super) fn find(rows: &[Row]) -> Option<[[u64; 2]; 2]> {
     // A sensor that is read faster than it measures repeats its rows.
     let runs: Vec<&[Row]> = rows.chunk_by(|one, next| measured(one) == measured(next)).collect();

@@ -91,8 +91,8 @@ pub struct TrialScore {
 pub struct Score {
     /// The subject of the verdict: simulated fingers.
     pub simulated: String,
-    /// Which layers the simulated fingers notice, and which levels of friction they tell apart, as a sentence. It names
-    /// the layers that some fingers may miss, and those that no stroke reached.
+    /// Sentence on the layers that the simulated fingers notice, and on the levels of friction that they tell apart. It
+    /// names the layers that some fingers may miss or that no stroke reached.
     pub verdict: String,
     /// The touch source that was simulated.
     pub touch_source: TouchSource,

@@ -20,7 +20,7 @@ pub enum PlanFileError {
         file: String,
         /// Error of the operating system.
         source: io::Error,
-        /// What to do.
+        /// Advice.
         advice: &'static str,
     },
     /// It has mistakes.

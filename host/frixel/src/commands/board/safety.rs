@@ -14,7 +14,7 @@ use frixel_scene::Screen;
 use frixel_session::store::{LimitsError, RAIL_MAX, check_touched_board};
 
 use crate::commands::argument;
-use crate::commands::check::{behind, until_measured};
+use crate::commands::real_board::{behind, until_measured};
 use crate::commands::terminal::print;
 use crate::scene_file;
 
